@@ -28,11 +28,11 @@ struct Cap {
 
 /// What a report says of a source.
 struct SourceInfo {
-    std::string name;          ///< file name without its folder, or a description of a made-up field
-    std::string checksum;      ///< SHA-256 of what determines the heights, 64 hex digits
-    std::string crs;           ///< "EPSG:4326" or WKT; empty for made-up fields
+    std::string name;      ///< file name without its folder, or a description of a made-up field
+    std::string checksum;  ///< SHA-256 of what determines the heights, 64 hex digits
+    std::string crs;       ///< "EPSG:4326" or WKT; empty for made-up fields
     VerticalDatum datum = VerticalDatum::egm96;
-    double spacing_m = 0;      ///< sqrt(dx dy) of its samples on the ground at its centre; 0: as fine as you like
+    double spacing_m = 0;  ///< sqrt(dx dy) of its samples on the ground at its centre; 0: as fine as you like
 };
 
 /// Implementations are immutable after construction and safe to read from several threads.

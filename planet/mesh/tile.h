@@ -10,10 +10,10 @@
 
 namespace planet {
 
-/// A diamond exists where both its cells' tiles have a record for it and its parents exist; where it does not, deviation
-/// is 0 and the cell is never split. deviation and radius are *saturated*: at least those of every child diamond, the
-/// same bits from both cells of a side, so that "split iff deviation > 0 and |eye - m| < radius + K deviation" is nested:
-/// a vertex passes only if its parents pass, and any recursive walk is conforming.
+/// A diamond exists where both its cells' tiles have a record for it and its parents exist; where it does not,
+/// deviation is 0 and the cell is never split. deviation and radius are *saturated*: at least those of every child
+/// diamond, the same bits from both cells of a side, so that "split iff deviation > 0 and |eye - m| < radius + K
+/// deviation" is nested: a vertex passes only if its parents pass, and any recursive walk is conforming.
 struct Tile {
     LocationCode root;  ///< bisection level a multiple of 12
     int depth = 0;      ///< 1..12: cells with local index < 2^depth can be split
@@ -22,12 +22,14 @@ struct Tile {
     /// By local index, 2^depth of them (0 unused): the largest distance in metres, along the geodetic normal, between
     /// the plane of either cell of the diamond and any finest vertex below; saturated.
     std::vector<float> deviation;
-    /// By local index, metres: every vertex below the diamond lies within it of the diamond's split vertex (true height).
+    /// By local index, metres: every vertex below the diamond lies within it of the diamond's split vertex (true
+    /// height).
     std::vector<float> radius;
     /// Bit k: the cell at relative level 12 and position k has a tile of its own. Empty unless depth is 12.
     std::bitset<tile_cells> child_exists;
     float min_height = 0, max_height = 0;  ///< over every finest vertex below, metres
-    /// Largest |source sample - lattice| over the source samples in the tile's own cells, metres. A bound on resampling.
+    /// Largest |source sample - lattice| over the source samples in the tile's own cells, metres. A bound on
+    /// resampling.
     float resampling = 0;
     bool damaged = false;  ///< stands in for a tile that could not be read
 };

@@ -38,8 +38,8 @@ TileLayout make() {
         t.split_vertex[i] = mid;
         t.corners[2 * i] = {l, a, mid};
         t.corners[2 * i + 1] = {a, r, mid};
-        if ((i & (i + 1)) == 0) t.vertex_count[static_cast<std::size_t>(std::bit_width(i))] =
-            static_cast<std::uint16_t>(vertices);
+        if ((i & (i + 1)) == 0)
+            t.vertex_count[static_cast<std::size_t>(std::bit_width(i))] = static_cast<std::uint16_t>(vertices);
     }
     return t;
 }

@@ -1,9 +1,11 @@
 #pragma once
-// Addresses: one 64-bit code for a triangle, an elevation tile, a GPU batch, a row in the store and a place on the curve.
+// Addresses: one 64-bit code for a triangle, an elevation tile, a GPU batch, a row in the store and a place on the
+// curve.
 //
 //     code = 1 | face:3 | path          a leading one bit, three face bits, one bit a bisection, at most 60
 //
-// A cell has corners left, right, apex. Its split side runs left-right. Bisecting it at the midpoint m of that side gives
+// A cell has corners left, right, apex. Its split side runs left-right. Bisecting it at the midpoint m of that side
+// gives
 //
 //              apex
 //              /|\               child 0 = (left, apex, m)      code*2
@@ -17,8 +19,8 @@
 //     N_i = (E_i, E_i+1, N)  faces 0..3        S_i = (E_i+1, E_i, S)  faces 4..7
 //
 // Two bisections are one quadtree level: each face is a pointerless quadtree, and a subtree is one range of codes.
-// The scheme is that of Balmelli, Kovacevic and Vetterli's linear quadtrees, and the order that of the Sierpinski bitree
-// (Valle Martinez); the constant-time neighbour across faces is our own, checked against geometry in the tests.
+// The scheme is that of Balmelli, Kovacevic and Vetterli's linear quadtrees, and the order that of the Sierpinski
+// bitree (Valle Martinez); the constant-time neighbour across faces is our own, checked against geometry in the tests.
 
 #include <bit>
 #include <cassert>
@@ -123,8 +125,12 @@ constexpr LocationCode diamond(LocationCode cell) {
 }
 
 /// Position of a face in the closed loop N0 N1 N2 N3 S3 S2 S1 S0, and back.
-constexpr int loop_rank_of_face(int f) { return f < 4 ? f : 11 - f; }
-constexpr int face_at_loop_rank(int rank) { return rank < 4 ? rank : 11 - rank; }
+constexpr int loop_rank_of_face(int f) {
+    return f < 4 ? f : 11 - f;
+}
+constexpr int face_at_loop_rank(int rank) {
+    return rank < 4 ? rank : 11 - rank;
+}
 
 /// The cell of the same level that follows on the closed Sierpinski loop over the planet; it shares a side.
 constexpr LocationCode next_on_loop(LocationCode cell) {

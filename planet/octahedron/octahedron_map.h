@@ -20,7 +20,9 @@ inline glm::dvec3 split_vertex(const glm::dvec3& a, const glm::dvec3& b) {
     const glm::dvec3 s = a + b;
     return s / std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z);
 }
-inline glm::dvec3 split_vertex(const Corners& c) { return split_vertex(c.left, c.right); }
+inline glm::dvec3 split_vertex(const Corners& c) {
+    return split_vertex(c.left, c.right);
+}
 
 /// The corners of child 0 or 1, given the split vertex m of the parent.
 inline Corners child_corners(const Corners& c, const glm::dvec3& m, int child) {
@@ -39,6 +41,8 @@ LocationCode cell_at(const glm::dvec3& direction, int bisection_level);
 
 /// Whether a cell is wound counter-clockwise seen from outside; alternates with the bisection level, and the faces of
 /// both hemispheres are counter-clockwise.
-constexpr bool is_counter_clockwise(LocationCode cell) { return (cell.bisection_level() & 1) == 0; }
+constexpr bool is_counter_clockwise(LocationCode cell) {
+    return (cell.bisection_level() & 1) == 0;
+}
 
 }  // namespace planet
