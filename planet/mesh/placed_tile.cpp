@@ -19,11 +19,12 @@ std::vector<glm::dvec3> tile_normals(LocationCode root, int depth) {
 }
 
 PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, const std::vector<float>& undulation)
-    : root(tile.root),
-      depth(tile.depth),
-      split(std::size_t{1} << tile.depth),
-      child_exists(tile.child_exists),
-      damaged(tile.damaged) {
+    : root(tile.root), depth(tile.depth), split(std::size_t{1} << tile.depth), damaged(tile.damaged) {
+    if (tile.child_exists.any()) {
+        children_ = std::make_unique<std::atomic<const PlacedTile*>[]>(tile_cells);
+        for (unsigned k = 0; k < tile_cells; ++k)
+            if (!tile.child_exists[k]) children_[k] = this;
+    }
     const TileLayout& layout = tile_layout();
     const std::vector<glm::dvec3> normals = tile_normals(root, depth);
     std::vector<glm::vec3> rounded(normals.size());
@@ -48,6 +49,16 @@ PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, const std::
                     std::nextafter(static_cast<float>(r), std::numeric_limits<float>::max())};
         if (placement.exaggeration == 1.0) split[i].radius = tile.radius[i];
     }
+}
+
+const PlacedTile* PlacedTile::child(const TileSource& source, unsigned k) const {
+    if (!children_) return nullptr;
+    const PlacedTile* found = children_[k].load(std::memory_order_acquire);
+    if (found == nullptr) {
+        found = source.tile(LocationCode(root.bits() << tile_levels | k));
+        children_[k].store(found ? found : this, std::memory_order_release);
+    }
+    return found == this ? nullptr : found;
 }
 
 }  // namespace planet

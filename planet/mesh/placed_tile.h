@@ -1,6 +1,7 @@
 #pragma once
 // A tile placed on its planet, ready for the walk: what the split test reads and the vertices it emits.
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct Placement {
     }
 };
 
+class TileSource;
+
 class PlacedTile {
   public:
     /// @param undulation by vertex index: the datum's height above the ellipsoid at each lattice vertex, metres; empty:
@@ -42,12 +45,21 @@ class PlacedTile {
     int depth;
     std::vector<SplitRecord> split;      ///< by local index, 2^depth
     std::vector<GridPosition> position;  ///< by vertex index
-    std::bitset<tile_cells> child_exists;
     bool damaged;
 
+    /// The tile below the cell at relative level 12 and position k, or nullptr if there is none: asked of the source
+    /// once.
+    /// @param k 0..4095
+    const PlacedTile* child(const TileSource& source, unsigned k) const;
+
     std::size_t bytes() const {
-        return sizeof *this + split.size() * sizeof(SplitRecord) + position.size() * sizeof(GridPosition);
+        return sizeof *this + split.size() * sizeof(SplitRecord) + position.size() * sizeof(GridPosition) +
+               (children_ ? tile_cells * sizeof(children_[0]) : 0);
     }
+
+  private:
+    // By position: unknown until asked for (nullptr), known to be missing (this), or the tile.
+    std::unique_ptr<std::atomic<const PlacedTile*>[]> children_;
 };
 
 /// The unit normals of a tile's lattice vertices, by vertex index, `depth` levels deep.

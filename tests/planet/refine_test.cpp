@@ -116,7 +116,7 @@ TEST(RefinePlanet, IsClosedForViewsAtEverySeam) {
                                {"near the pole", 89.9999, 33},
                                {"near E1", 0.0001, 89.9999}};
     for (const NamedView& v : seams)
-        for (const double height : {2.0, 3000.0, 4e5, 2e7}) expect_closed(tiles, v.latitude, v.longitude, height, 900);
+        for (const double height : {2.0, 3000.0, 4e5, 2e7}) expect_closed(tiles, v.latitude, v.longitude, height, 120);
 }
 
 TEST(RefinePlanet, IsClosedForRandomViews) {
@@ -127,7 +127,7 @@ TEST(RefinePlanet, IsClosedForRandomViews) {
     for (int i = 0; i < 200; ++i) {
         const double latitude = std::asin(unit(random)) / degrees, longitude = 180 * unit(random);
         const double height = std::exp(8.5 + 8.5 * unit(random));
-        expect_closed(i % 4 == 0 ? high : tiles, latitude, longitude, height, 300 + 250 * unit(random));
+        expect_closed(i % 4 == 0 ? high : tiles, latitude, longitude, height, 60 + 50 * unit(random));
     }
 }
 
