@@ -120,14 +120,14 @@ TEST(RefinePlanet, IsClosedForViewsAtEverySeam) {
 }
 
 TEST(RefinePlanet, IsClosedForRandomViews) {
-    const BallTiles tiles(25, 0.0005, bumps);
-    const BallTiles high(25, 0.0005, bumps, 4.0);
+    const BallTiles tiles(18, 0.0005, bumps);
+    const BallTiles high(18, 0.0005, bumps, 4.0);
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> unit(-1, 1);
     for (int i = 0; i < 200; ++i) {
         const double latitude = std::asin(unit(random)) / degrees, longitude = 180 * unit(random);
         const double height = std::exp(8.5 + 8.5 * unit(random));
-        expect_closed(i % 4 == 0 ? high : tiles, latitude, longitude, height, 60 + 50 * unit(random));
+        expect_closed(i % 4 == 0 ? high : tiles, latitude, longitude, height, 300 + 250 * unit(random));
     }
 }
 
