@@ -19,7 +19,11 @@ std::vector<glm::dvec3> tile_normals(LocationCode root, int depth) {
 }
 
 PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, const std::vector<float>& undulation)
-    : root(tile.root), depth(tile.depth), split(std::size_t{1} << tile.depth), damaged(tile.damaged) {
+    : root(tile.root),
+      depth(tile.depth),
+      split(std::size_t{1} << tile.depth),
+      height(tile.height),
+      damaged(tile.damaged) {
     if (tile.child_exists.any()) {
         children_ = std::make_unique<std::atomic<const PlacedTile*>[]>(tile_cells);
         for (unsigned k = 0; k < tile_cells; ++k)
@@ -49,6 +53,15 @@ PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, const std::
                     std::nextafter(static_cast<float>(r), std::numeric_limits<float>::max())};
         if (placement.exaggeration == 1.0) split[i].radius = tile.radius[i];
     }
+}
+
+bool PlacedTile::has_child_below(unsigned i) const {
+    if (!children_) return false;
+    const int below = tile_levels + 1 - static_cast<int>(std::bit_width(i));
+    const unsigned first = (i << below) - tile_cells, end = ((i + 1) << below) - tile_cells;
+    for (unsigned k = first; k < end; ++k)
+        if (children_[k].load(std::memory_order_relaxed) != this) return true;
+    return false;
 }
 
 const PlacedTile* PlacedTile::child(const TileSource& source, unsigned k) const {

@@ -45,6 +45,7 @@ class PlacedTile {
     int depth;
     std::vector<SplitRecord> split;      ///< by local index, 2^depth
     std::vector<GridPosition> position;  ///< by vertex index
+    std::vector<float> height;           ///< by vertex index, metres above the datum, not exaggerated
     bool damaged;
 
     /// The tile below the cell at relative level 12 and position k, or nullptr if there is none: asked of the source
@@ -52,9 +53,12 @@ class PlacedTile {
     /// @param k 0..4095
     const PlacedTile* child(const TileSource& source, unsigned k) const;
 
+    /// Whether the tile has a tile below its local cell i.
+    bool has_child_below(unsigned i) const;
+
     std::size_t bytes() const {
         return sizeof *this + split.size() * sizeof(SplitRecord) + position.size() * sizeof(GridPosition) +
-               (children_ ? tile_cells * sizeof(children_[0]) : 0);
+               height.size() * sizeof(float) + (children_ ? tile_cells * sizeof(children_[0]) : 0);
     }
 
   private:
