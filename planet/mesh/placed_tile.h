@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "planet/geodesy/ellipsoid.h"
 #include "planet/mesh/grid.h"
 #include "planet/mesh/tile.h"
 
@@ -18,18 +20,14 @@ struct SplitRecord {
     float radius;
 };
 
-/// Puts heights on the planet: the position of a geodetic normal at a height above the store's datum. Pure: the same
-/// bits for the same arguments.
+/// Puts heights on the planet.
 struct Placement {
-    double a = 6378137.0, b = 6356752.314245179;  ///< semi-axes, metres
-    double exaggeration = 1;                      ///< of the height above the datum; the geoid is not exaggerated
+    Ellipsoid ellipsoid = wgs84;
+    double exaggeration = 1;  ///< >= 0, of the height above the datum; the geoid is not exaggerated
 
-    /// @param n unit geodetic normal; @param h height above the datum; @param undulation datum above the ellipsoid
-    glm::dvec3 ecef(const glm::dvec3& n, double h, double undulation) const {
-        const double a2 = a * a, b2 = b * b;
-        const double s = 1.0 / std::sqrt(a2 * (n.x * n.x + n.y * n.y) + b2 * n.z * n.z);
-        const double up = h * exaggeration + undulation;
-        return {(a2 * s + up) * n.x, (a2 * s + up) * n.y, (b2 * s + up) * n.z};
+    /// @param n unit geodetic normal; @param H height above the datum, metres; @param N datum above the ellipsoid
+    glm::dvec3 ecef(const glm::dvec3& n, double H, GeoidUndulation N) const {
+        return ecef_from_normal(ellipsoid, n, {H * exaggeration + N.m});
     }
 };
 

@@ -47,7 +47,7 @@ std::vector<Triangle> triangles_of(const Segments& s) {
 
 SegmentView view_at(double latitude, double longitude, double height, double K) {
     SegmentView view;
-    view.test = {Placement{}.ecef(normal_from_geodetic(latitude * degrees, longitude * degrees), 0, height), K};
+    view.test = {ecef_from_normal(wgs84, normal_from_geodetic(latitude * degrees, longitude * degrees), {height}), K};
     view.culling.eye = view.test.eye;
     return view;
 }
@@ -101,7 +101,7 @@ TEST(Segments, PatchCoordinatesLeadToTheVertex) {
             const glm::dvec3 n = u + w <= 1
                                      ? c.apex + u * (c.left - c.apex) + w * (c.right - c.apex)
                                      : far.apex + (1 - u) * (far.left - far.apex) + (1 - w) * (far.right - far.apex);
-            const glm::dvec3 p = Placement{}.ecef(glm::normalize(n), 0, 0);
+            const glm::dvec3 p = ecef_from_normal(wgs84, glm::normalize(n), {0});
             const double size = glm::distance(c.left, c.right) * 6.4e6;
             ASSERT_LT(glm::distance(p, ecef_from_grid(v.position)),
                       0.25 * size * std::min(1.0, size / 6.4e6) + 0.01 * size)
