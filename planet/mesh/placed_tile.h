@@ -37,7 +37,7 @@ class PlacedTile {
   public:
     /// @param undulation by vertex index: the datum's height above the ellipsoid at each lattice vertex, metres; empty:
     /// 0
-    PlacedTile(const Tile& tile, const Placement& placement, const std::vector<float>& undulation);
+    PlacedTile(const Tile& tile, const Placement& placement, std::span<const GeoidUndulation> undulation = {});
 
     LocationCode root;
     int depth;
