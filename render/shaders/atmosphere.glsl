@@ -85,8 +85,8 @@ Air air_along(AirRay ray, float distance) {
     float s = length_in_air / max(ray.leave - ray.enter, 1.0f);
     float u = pow(max(s, 1.0e-12f), ray.power);
     vec4 texel = textureLod(air_table, vec3(inset(ray.azimuth, air_azimuths), ray.elevation, inset(u, air_slices)), 0.0f);
-    // rgb: mean source function (Chandrasekhar's J) scaled; a: mean extinction in green, per 1000 km.
-    float depth = texel.w * length_in_air * 1.0e-6f;
+    // rgb: mean source function (Chandrasekhar's J) scaled; a: log of the mean extinction in green, per 1000 km.
+    float depth = exp(texel.w) * length_in_air * 1.0e-6f;
     air.transmittance = exp(-depth * vec3(sky_depth_ratio));
     air.in_scatter = (vec3(1.0f) - air.transmittance) * vec3(texel) * sky_depth_ratio.w;
     return air;

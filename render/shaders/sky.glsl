@@ -19,7 +19,7 @@ vec3 sky_radiance(vec3 direction, vec3 through) {
     float radius2 = 2.0f - 2.0f * sky_sun.w;
     float soft = sky_picture.w * sqrt(radius2) * 2.0f + 1.0e-9f;
     float inside = clamp(0.5f + (radius2 - angle2) / soft, 0.0f, 1.0f);
-    // Limb darkening: Hestroffer and Magnan 1998, exponents at 680, 550 and 440 nm.
+    // Limb darkening: Hestroffer and Magnan 1998, exponents at 680, 550 and 440 nm there.
     float cosine = sqrt(max(1.0f - angle2 / radius2, 0.0f));
     vec3 limb = pow(vec3(max(cosine, 0.02f)), vec3(0.397f, 0.503f, 0.652f));
     // The disc is 46,000 times white paper; a tenth of a thousandth of that already fills the film.

@@ -39,16 +39,17 @@ float patch_noise(vec3 view, float size) {
 }
 
 /// Heights in metres at which forest ends and snow stays, by |sine of the latitude|: straight lines through the
-/// equator and subtropics (4,200 m), 38 degrees (3,200), the Alps (2,200) and 70 degrees (200).
+/// equator and subtropics (4,100 m), Colorado (3,600), the Alps (2,300) and 65 degrees (300).
 float treeline_at(float sin_latitude) {
-    return clamp(4200.0f - (sin_latitude - 0.5f) * 9090.0f, -400.0f, 4200.0f);
+    return clamp(3600.0f - (sin_latitude - 0.609f) * 11200.0f, -400.0f, 4100.0f);
 }
 
 /// What one stands on where imagery has no more to say: colour from height, slope, latitude and the imagery's hue.
 /// @param steep cosine of the slope   @param large, small noise -1..1
 vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
     float lum = max(luminance(s.imagery), 0.004f);
-    float dry = smoothstep(0.85f, 1.35f, s.imagery.r / max(s.imagery.g, 0.004f)) * smoothstep(0.02f, 0.08f, lum);
+    // Forest is dark in any imagery, and drought is yellow and bright.
+    float dry = smoothstep(0.75f, 1.3f, s.imagery.r / max(s.imagery.g, 0.004f)) * smoothstep(0.025f, 0.085f, lum);
     float treeline = treeline_at(abs(s.normal.z)) + 220.0f * large;
     float h = s.height + 60.0f * small;
 

@@ -8,7 +8,8 @@
 //
 // Model: Rayleigh and Mie scattering with exponential profiles, ozone with a tent profile (Bruneton 2017's values for
 // Earth), one order of scattering exact, all higher ones isotropic (Hillaire, "A Scalable and Production Ready Sky and
-// Atmosphere Rendering Technique", 2020). Channels are narrow bands at 680, 550 and 440 nm. No refraction: the ground
+// Atmosphere Rendering Technique", 2020). Channels are narrow bands at 640, 550 and 455 nm,
+// nearer to the primaries of sRGB than the usual 680 and 440: haze is blue over sand, not violet. No refraction: the ground
 // sphere lies 500 m below the ellipsoid (below the Dead Sea, and 0.7 degrees of dip at the sea, close to the 0.57
 // degrees that refraction lifts the sun), so terrain always covers its horizon.
 //
@@ -22,8 +23,8 @@
 //   uniform block SkyBlock at binding 1, std140: ViewTable::uniforms (SkyUniforms), byte for byte
 //
 // The air table, (azimuth 64) x (elevation 96 below + 64 above the horizon) x (depth 16). Texel: rgb the mean source
-// function J = in-scattered radiance / (1 - T) times 64, a the mean extinction in green per 1000 km, both from where
-// the ray enters the air to the depth of the slice. Means and not sums: they vary slowly, so few texels are enough and
+// function J = in-scattered radiance / (1 - T) times 64, a the natural logarithm of the mean extinction in
+// green per 1000 km (the air thins exponentially, and so is its logarithm what interpolates), both from where the ray enters the air to the depth of the slice. Means and not sums: they vary slowly, so few texels are enough and
 // near terrain is right to first order. T = exp(-ratio * depth_green) with one fitted ratio a channel and view.
 //   azimuth    x = sin(azimuth from the sun / 2); the table is symmetric
 //   elevation  below: x = sqrt(1 - sin(i/2) sqrt 2), i the angle of incidence at the ground; rows run horizon last
@@ -44,13 +45,13 @@ struct Atmosphere {
     double polar_radius = 6356752.314245179;
     double depth_below = 500.0;    ///< the ground sphere lies this far below the ellipsoid
     double thickness = 100.0e3;    ///< the air ends this far above the ground sphere
-    glm::dvec3 rayleigh{5.802e-6, 13.558e-6, 33.1e-6};
+    glm::dvec3 rayleigh{7.39e-6, 13.558e-6, 28.9e-6};
     double rayleigh_scale_height = 8000.0;
     double mie_scattering = 3.996e-6;
     double mie_extinction = 4.44e-6;
     double mie_scale_height = 1200.0;
     double mie_asymmetry = 0.8;                       ///< g of the Cornette-Shanks phase function, [0, 1)
-    glm::dvec3 ozone{0.650e-6, 1.881e-6, 0.085e-6};   ///< at its peak, 25 km up, falling to 0 over 15 km
+    glm::dvec3 ozone{1.6e-6, 1.881e-6, 0.15e-6};   ///< at its peak, 25 km up, falling to 0 over 15 km
     double ground_albedo = 0.15;                      ///< for light that comes back up, [0, 1]
     double sun_angular_radius = 0.004654;             ///< rad, mean over the year
 

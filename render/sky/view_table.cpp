@@ -198,7 +198,7 @@ void write_slice(TableImage& air, int row, int slice, const Azimuths& all, const
     }
     for (int i = 0; i < air_azimuths; ++i)
         air.at(i, row, slice) = glm::vec4(glm::min(all[static_cast<std::size_t>(i)].sum * scale, glm::vec3(60000.0f)),
-                                          static_cast<float>(extinction * 1e6));
+                                          static_cast<float>(std::log(std::max(extinction * 1e6, 1e-9))));
 }
 
 class RowMaker {
@@ -271,7 +271,7 @@ SkyUniforms uniforms_of(const AtmosphereTables& tables, const View& v, const dve
     u.sky_sun = {sun, std::cos(air.sun_angular_radius)};
     u.sky_sunlight = {std::numbers::pi * dvec3(1), 7.0};
     u.sky_detail = {eye - period * glm::floor(eye / period), 9784.0};
-    u.sky_exposure = {exposure_for(tables, eye, sun), 0.35, 0.0015, 0.0};
+    u.sky_exposure = {exposure_for(tables, eye, sun), 4.0, 0.0015, 0.0};
     u.sky_picture = {0, 0, 1, 0.001};
     return u;
 }
@@ -314,7 +314,7 @@ float exposure_for(const AtmosphereTables& tables, const dvec3& eye, const dvec3
     };
     const double light = std::max(level(i) + (level(i + 1) - level(i)) * (x - i), 2e-4);
     const double full = 0.8, low = 1 - smooth(30e3, 400e3, r - profile.ground());
-    return static_cast<float>(std::pow(std::max(full / light, 1.0), 0.62 * low));
+    return static_cast<float>(std::pow(std::max(full / light, 1.0), 0.45 * low) * (1 + 0.45 * low));
 }
 
 }  // namespace render
