@@ -18,18 +18,23 @@ std::vector<glm::dvec3> tile_normals(LocationCode root, int depth) {
     return n;
 }
 
-PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, const std::vector<float>& undulation)
+PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, std::span<const GeoidUndulation> undulation)
     : root(tile.root),
       depth(tile.depth),
       split(std::size_t{1} << tile.depth),
-      child_exists(tile.child_exists),
+      height(tile.height),
       damaged(tile.damaged) {
+    if (tile.child_exists.any()) {
+        children_ = std::make_unique<std::atomic<const PlacedTile*>[]>(tile_cells);
+        for (unsigned k = 0; k < tile_cells; ++k)
+            if (!tile.child_exists[k]) children_[k] = this;
+    }
     const TileLayout& layout = tile_layout();
     const std::vector<glm::dvec3> normals = tile_normals(root, depth);
     std::vector<glm::vec3> rounded(normals.size());
     position.resize(normals.size());
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        const double N = undulation.empty() ? 0.0 : static_cast<double>(undulation[v]);
+        const GeoidUndulation N = undulation.empty() ? GeoidUndulation{} : undulation[v];
         const glm::dvec3 p = placement.ecef(normals[v], static_cast<double>(tile.height[v]), N);
         position[v] = grid_from_ecef(p);
         rounded[v] = glm::vec3(p);
@@ -48,6 +53,25 @@ PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, const std::
                     std::nextafter(static_cast<float>(r), std::numeric_limits<float>::max())};
         if (placement.exaggeration == 1.0) split[i].radius = tile.radius[i];
     }
+}
+
+bool PlacedTile::has_child_below(unsigned i) const {
+    if (!children_) return false;
+    const int below = tile_levels + 1 - static_cast<int>(std::bit_width(i));
+    const unsigned first = (i << below) - tile_cells, end = ((i + 1) << below) - tile_cells;
+    for (unsigned k = first; k < end; ++k)
+        if (children_[k].load(std::memory_order_relaxed) != this) return true;
+    return false;
+}
+
+const PlacedTile* PlacedTile::child(const TileSource& source, unsigned k) const {
+    if (!children_) return nullptr;
+    const PlacedTile* found = children_[k].load(std::memory_order_acquire);
+    if (found == nullptr) {
+        found = source.tile(LocationCode(root.bits() << tile_levels | k));
+        children_[k].store(found ? found : this, std::memory_order_release);
+    }
+    return found == this ? nullptr : found;
 }
 
 }  // namespace planet

@@ -29,9 +29,9 @@ class Walk {
 
   private:
     void below(const PlacedTile& t, unsigned i, unsigned state) {
-        if (t.depth == tile_levels && t.child_exists[i - tile_cells]) {
-            const LocationCode root(t.root.bits() << tile_levels | (i - tile_cells));
-            if (const PlacedTile* child = tiles_.tile(root); child && test_(child->split[1])) {
+        if (t.depth == tile_levels) {
+            const PlacedTile* child = t.child(tiles_, i - tile_cells);
+            if (child && test_(child->split[1])) {
                 sink_.tile(*child);
                 cell(*child, 1, state);
                 sink_.tile(t);
@@ -52,9 +52,22 @@ inline LocationCode code_of(const PlacedTile& t, unsigned i) {
     return LocationCode(t.root.bits() << level | (i ^ 1u << level));
 }
 
-/// The whole planet as one closed mesh: every leaf, unique vertices, one strip. Memory grows with the leaves; use
-/// segments (segments.h) for pictures.
-/// @param with_triangles fill triangles and cells beside the vertices and the strip
-TriangleMesh refine_planet(const TileSource& tiles, const SplitTest& test, bool with_triangles = true);
+/// The whole planet as one strip over unique vertices. Keeps its storage from one use to the next.
+class StripMesh {
+  public:
+    /// Replaces the mesh by the leaves that the test asks for. Memory grows with the leaves; for pictures use
+    /// segments.h.
+    void refine(const TileSource& tiles, const SplitTest& test);
+
+    std::span<const GridPosition> vertices() const { return vertices_.span(); }
+    std::span<const std::uint32_t> strip() const { return strip_.indices().span(); }
+
+  private:
+    GrowingArray<GridPosition> vertices_;
+    StripWriter strip_;
+};
+
+/// The same with the list of triangles and their cells: for checks, exports and pictures of the mesh.
+TriangleMesh refine_planet(const TileSource& tiles, const SplitTest& test);
 
 }  // namespace planet

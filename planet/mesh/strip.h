@@ -18,8 +18,8 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
+#include "planet/mesh/growing_array.h"
 #include "planet/octahedron/location_code.h"
 
 namespace planet {
@@ -105,57 +105,52 @@ constexpr std::array<std::uint8_t, 2> strip_first_gate(unsigned state) {
     return {other, 0};
 }
 
-/// Writes one strip. Storage is grown by the caller in steps (reserve), so that a leaf costs no check.
+/// Writes strips. Room is made in steps (reserve), so that a leaf costs no check.
 class StripWriter {
   public:
     /// Room for that many more leaves.
     void reserve(std::size_t leaves) {
-        const std::size_t depth = leaves + 2;
-        if (left_.size() < depth_left_ + depth) left_.resize(2 * (depth_left_ + depth));
-        if (right_.size() < depth_right_ + depth) right_.resize(2 * (depth_right_ + depth));
-        if (indices_.size() < count_ + 2 * depth) indices_.resize(2 * (count_ + 2 * depth));
+        left_.reserve_more(leaves + 1);
+        right_.reserve_more(leaves + 1);
+        indices_.reserve_more(2 * leaves + 2);
     }
 
+    /// Starts a strip at a gate.
     void begin(std::uint32_t left, std::uint32_t right) {
-        depth_left_ = depth_right_ = 0;
-        left_[depth_left_++] = left;
-        right_[depth_right_++] = right;
-        indices_[count_++] = left;
-        indices_[count_++] = right;
+        left_.clear();
+        right_.clear();
+        left_.push(left);
+        right_.push(right);
+        indices_.push(left);
+        indices_.push(right);
         last_left_ = false;
     }
 
-    std::uint32_t gate_left() const { return left_[depth_left_ - 1]; }
-    std::uint32_t gate_right() const { return right_[depth_right_ - 1]; }
+    std::uint32_t gate_left() const { return left_.back(); }
+    std::uint32_t gate_right() const { return right_.back(); }
 
-    /// Moves one end of the gate. @param make_vertex called for a new vertex, returns its index
+    /// Moves one end of the gate and returns its new vertex. @param make_vertex called for a new vertex, returns its
+    /// index
     template <class MakeVertex>
     std::uint32_t step(StripStep step, MakeVertex&& make_vertex) {
-        if (step.left_side) {
-            if (last_left_) indices_[count_++] = gate_right();  // two steps on one side: repeat the pivot
-            if (step.pop)
-                --depth_left_;
-            else
-                left_[depth_left_++] = make_vertex();
-            last_left_ = true;
-            return indices_[count_++] = gate_left();
-        }
-        if (!last_left_) indices_[count_++] = gate_left();
+        GrowingArray<std::uint32_t>& moving = step.left_side ? left_ : right_;
+        if (step.left_side == last_left_)  // two steps on one side: repeat the pivot, the other end
+            indices_.push(step.left_side ? right_.back() : left_.back());
         if (step.pop)
-            --depth_right_;
+            moving.pop();
         else
-            right_[depth_right_++] = make_vertex();
-        last_left_ = false;
-        return indices_[count_++] = gate_right();
+            moving.push(make_vertex());
+        last_left_ = step.left_side;
+        indices_.push(moving.back());
+        return moving.back();
     }
 
-    std::size_t size() const { return count_; }
-    const std::uint32_t* data() const { return indices_.data(); }
-    void clear() { count_ = depth_left_ = depth_right_ = 0; }
+    /// All strips so far, one behind the other.
+    const GrowingArray<std::uint32_t>& indices() const { return indices_; }
+    void clear() { indices_.clear(); }
 
   private:
-    std::vector<std::uint32_t> left_, right_, indices_;
-    std::size_t depth_left_ = 0, depth_right_ = 0, count_ = 0;
+    GrowingArray<std::uint32_t> left_, right_, indices_;
     bool last_left_ = false;
 };
 
