@@ -18,7 +18,7 @@ std::vector<glm::dvec3> tile_normals(LocationCode root, int depth) {
     return n;
 }
 
-PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, std::span<const GeoidUndulation> undulation)
+PlacedTile::PlacedTile(const Tile& tile, const Placement& placement)
     : root(tile.root),
       depth(tile.depth),
       split(std::size_t{1} << tile.depth),
@@ -34,7 +34,7 @@ PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, std::span<c
     std::vector<glm::vec3> rounded(normals.size());
     position.resize(normals.size());
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        const GeoidUndulation N = undulation.empty() ? GeoidUndulation{} : undulation[v];
+        const GeoidUndulation N{tile.undulation.empty() ? 0.0 : static_cast<double>(tile.undulation[v])};
         const glm::dvec3 p = placement.ecef(normals[v], static_cast<double>(tile.height[v]), N);
         position[v] = grid_from_ecef(p);
         rounded[v] = glm::vec3(p);

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "planet/geodesy/ellipsoid.h"
@@ -35,9 +34,7 @@ class TileSource;
 
 class PlacedTile {
   public:
-    /// @param undulation by vertex index: the datum's height above the ellipsoid at each lattice vertex, metres; empty:
-    /// 0
-    PlacedTile(const Tile& tile, const Placement& placement, std::span<const GeoidUndulation> undulation = {});
+    PlacedTile(const Tile& tile, const Placement& placement);
 
     LocationCode root;
     int depth;
