@@ -199,7 +199,7 @@ void TileLattice::set_positions(const Placement& placement, std::span<const floa
     rounded_.resize(size_);
     for (std::size_t v = 0; v < size_; ++v) {
         const double N = undulation.empty() ? 0.0 : static_cast<double>(undulation[v]);
-        const glm::dvec3 p = placement.ecef(normal(v), static_cast<double>(height[v]), N);
+        const glm::dvec3 p = placement.ecef(normal(v), static_cast<double>(height[v]), {N});
         x[v] = p.x;
         y[v] = p.y;
         z[v] = p.z;

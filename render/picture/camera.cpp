@@ -28,7 +28,9 @@ glm::dvec3 look_direction(const glm::dvec3& at, double heading, double pitch) {
     return axes_of(at, heading, pitch).ahead;
 }
 
-double focal_length_px(double fov, int width, int height) { return 0.5 * std::min(width, height) / std::tan(0.5 * fov); }
+double focal_length_px(double fov, int width, int height) {
+    return 0.5 * std::min(width, height) / std::tan(0.5 * fov);
+}
 
 Camera make_camera(const glm::dvec3& eye, const glm::dvec3& at, double heading, double pitch, double focal_px,
                    int width, int height) {
@@ -45,7 +47,8 @@ Camera make_camera(const glm::dvec3& eye, const glm::dvec3& at, double heading, 
 
 glm::dmat4 Camera::clip_from_view(const PicturePart& part) const {
     // A view vector (X, Y, Z) meets the picture at pixel (width/2 + f X/-Z, height/2 - f Y/-Z) from the top left; the
-    // part's pixels x .. x + part.width go to -1 .. 1, and y down becomes y up. Depth: near / -Z, 1 at near, 0 at infinity.
+    // part's pixels x .. x + part.width go to -1 .. 1, and y down becomes y up. Depth: near / -Z, 1 at near, 0 at
+    // infinity.
     const double sx = 2 * focal_px / part.width, sy = 2 * focal_px / part.height;
     const double ox = (width - 2.0 * part.x) / part.width - 1, oy = 1 - (height - 2.0 * part.y) / part.height;
     glm::dmat4 m(0);
@@ -61,15 +64,12 @@ glm::mat4 Camera::clip_from_ecef(const PicturePart& part) const {
 }
 
 glm::mat4 Camera::ecef_direction_from_clip(const PicturePart& part) const {
-    // With w = 1: view = ((x + ox) / sx, (y + oy) / sy, -1).
+    // At Z = -1: X = (x - ox) / sx, Y = (y - oy) / sy.
     const glm::dmat4 p = clip_from_view(part);
     glm::dmat4 view(0);
-    view[0] = {1 / p[0][0], 0, 0, 0};
-    view[1] = {0, 1 / p[1][1], 0, 0};
-    view[3] = {-p[2][0] / p[0][0], -p[2][1] / p[1][1], -1, 0};
-    // clip.x / w = sx X + ox' with X = view.x at Z = -1: x = sx X - m[2][0] (-1)... see clip_from_view: x = sx X + ox.
-    view[3].x = -(-p[2][0]) / p[0][0];
-    view[3].y = -(-p[2][1]) / p[1][1];
+    view[0].x = 1 / p[0].x;
+    view[1].y = 1 / p[1].y;
+    view[3] = {p[2].x / p[0].x, p[2].y / p[1].y, -1, 0};
     return glm::mat4(glm::dmat4(glm::transpose(view_from_ecef)) * view);
 }
 
@@ -78,12 +78,15 @@ planet::Culling Camera::culling(double occluder_radius) const {
     const double x = 0.5 * width / focal_px, y = 0.5 * height / focal_px;
     planet::Culling c;
     c.eye = eye;
-    c.inward = {ecef_from_view * glm::normalize(glm::dvec3(1, 0, -x)), ecef_from_view * glm::normalize(glm::dvec3(-1, 0, -x)),
-                ecef_from_view * glm::normalize(glm::dvec3(0, 1, -y)), ecef_from_view * glm::normalize(glm::dvec3(0, -1, -y))};
+    c.inward = {
+        ecef_from_view * glm::normalize(glm::dvec3(1, 0, -x)), ecef_from_view * glm::normalize(glm::dvec3(-1, 0, -x)),
+        ecef_from_view * glm::normalize(glm::dvec3(0, 1, -y)), ecef_from_view * glm::normalize(glm::dvec3(0, -1, -y))};
     c.occluder_radius = occluder_radius;
     return c;
 }
 
-double Camera::tan_corner() const { return std::hypot(0.5 * width, 0.5 * height) / focal_px; }
+double Camera::tan_corner() const {
+    return std::hypot(0.5 * width, 0.5 * height) / focal_px;
+}
 
 }  // namespace render

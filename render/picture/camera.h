@@ -18,7 +18,7 @@ struct PicturePart {
 /// A pinhole camera. The eye is put on the planet-fixed grid, where the vertex shader has it.
 struct Camera {
     planet::GridEye grid_eye;
-    glm::dvec3 eye{0};  ///< ecef, m: exactly grid_eye
+    glm::dvec3 eye{0};             ///< ecef, m: exactly grid_eye
     glm::dmat3 view_from_ecef{1};  ///< rotation: rows right, up, back
     double focal_px = 1;
     int width = 1, height = 1;
