@@ -62,7 +62,8 @@ struct Raster {
     std::size_t count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
     /// A height in metres; NaN where void. Column and row within the grid.
     double at(int column, int row) const {
-        const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+        const auto i =
+            static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
         if (const auto* s = std::get_if<std::vector<std::int16_t>>(&samples)) {
             if ((*s)[i] == water_sample) return 0;
             return (*s)[i] == void_sample ? std::numeric_limits<double>::quiet_NaN() : offset + scale * (*s)[i];

@@ -18,8 +18,8 @@ constexpr double unbelievable_m = 1e6;  // farther from 0 than any relief: an un
 using Dataset = std::unique_ptr<GDALDataset, void (*)(GDALDataset*)>;
 
 Dataset open(const std::string& path, const GdalMessages& messages) {
-    Dataset dataset(static_cast<GDALDataset*>(GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, nullptr,
-                                                         nullptr, nullptr)),
+    Dataset dataset(static_cast<GDALDataset*>(
+                        GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, nullptr, nullptr, nullptr)),
                     [](GDALDataset* d) { GDALClose(d); });
     if (!dataset) throw Error(Fault::bad_data, path, "cannot be read: " + messages.last(), one_band);
     return dataset;
@@ -31,7 +31,9 @@ std::string subdatasets(GDALDataset& dataset) {
     for (int i = 0; list && list[i]; ++i) {
         const std::string entry = list[i];
         const auto at = entry.find("_NAME=");
-        if (at != std::string::npos && names.size() < 300) names += (names.empty() ? "" : " ") + entry.substr(at + 6);
+        if (at == std::string::npos || names.size() > 300) continue;
+        if (!names.empty()) names += ' ';
+        names.append(entry, at + 6);
     }
     return names;
 }
@@ -49,7 +51,8 @@ GDALRasterBand& height_band(GDALDataset& dataset, const std::string& path) {
     if (n > 1 && !alpha) {
         const bool colour = band.GetColorInterpretation() == GCI_RedBand;
         throw Error(Fault::bad_data, path,
-                    "has " + std::to_string(n) + " bands" + (colour ? ": a colour picture, not elevation" : ""), one_band);
+                    "has " + std::to_string(n) + " bands" + (colour ? ": a colour picture, not elevation" : ""),
+                    one_band);
     }
     if (band.GetColorInterpretation() == GCI_PaletteIndex)
         throw Error(Fault::bad_data, path, "holds palette colours, not elevation", one_band);
@@ -115,8 +118,7 @@ int reduction_for(int width, int height, const RasterOptions& options, const std
                     "at most " + std::to_string(options.max_samples) + " samples; cut or reduce it");
     int n = 3;
     while (size(n) > options.max_samples && n < std::min(width, height) - 2) n += 2;
-    if (size(n) > options.max_samples)
-        throw Error(Fault::bad_data, path, text + " samples cannot be reduced enough");
+    if (size(n) > options.max_samples) throw Error(Fault::bad_data, path, text + " samples cannot be reduced enough");
     return n;
 }
 
@@ -195,8 +197,8 @@ class SampleReader {
         const Read nodata = static_cast<Read>(nodata_);  // a float file's nodata is the float nearest to what it says
         for (std::size_t i = 0; i < n; ++i) {
             const double metres = raster.offset + raster.scale * static_cast<double>(in[i]);
-            const bool valid = std::abs(metres) <= unbelievable_m && !(has_nodata_ && in[i] == nodata) &&
-                               (!masked_ || mask_[i] != 0);
+            const bool valid =
+                std::abs(metres) <= unbelievable_m && !(has_nodata_ && in[i] == nodata) && (!masked_ || mask_[i] != 0);
             out[i] = valid ? static_cast<float>(in[i]) : std::numeric_limits<float>::quiet_NaN();
             any |= valid;
         }
