@@ -81,8 +81,9 @@ void check(const char* name, double value, double low, double high) {
 
 std::string describe(const FractalParameters& p) {
     char text[256];
-    std::snprintf(text, sizeof text, "fractal seed=%u amplitude=%.17g longest=%.17g shortest=%.17g hurst=%.17g radius=%.17g%s",
-                  p.seed, p.amplitude_m, p.longest_m, p.shortest_m, p.hurst, p.radius_m, p.ridged ? " ridged" : "");
+    std::snprintf(text, sizeof text,
+                  "fractal seed=%u amplitude=%.17g longest=%.17g shortest=%.17g hurst=%.17g radius=%.17g%s", p.seed,
+                  p.amplitude_m, p.longest_m, p.shortest_m, p.hurst, p.radius_m, p.ridged ? " ridged" : "");
     return text;
 }
 

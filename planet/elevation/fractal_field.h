@@ -2,12 +2,12 @@
 // Made-up relief: a band-limited fractal of gradient noise.
 //
 // The sum over octaves k = 0, 1, ... of a_k noise_k(p / l_k), p on the sphere of radius_m, with wavelengths
-// l_k = longest_m / 2^k down to shortest_m and amplitudes a_k = amplitude_m * 2^(-k hurst). noise_k is Perlin's gradient
-// noise in three dimensions ("Improving noise", SIGGRAPH 2002: quintic blend, twelve gradients), scaled to root mean
-// square 1, with lattice and gradients of its own for every octave and seed. Each octave's power lies around its own
-// wave number (most of it within an octave), so the power spectrum of a profile falls as wave number^-(2 hurst + 1), and
-// there is next to nothing beyond 2 / shortest_m. `ridged` folds every octave: sqrt(3) (1 - 2 |noise_k|) (mean near 0)
-// makes crests of its zeros (Musgrave, in "Texturing and Modeling: A Procedural Approach").
+// l_k = longest_m / 2^k down to shortest_m and amplitudes a_k = amplitude_m * 2^(-k hurst). noise_k is Perlin's
+// gradient noise in three dimensions ("Improving noise", SIGGRAPH 2002: quintic blend, twelve gradients), scaled to
+// root mean square 1, with lattice and gradients of its own for every octave and seed. Each octave's power lies around
+// its own wave number (most of it within an octave), so the power spectrum of a profile falls as wave number^-(2 hurst
+// + 1), and there is next to nothing beyond 2 / shortest_m. `ridged` folds every octave: sqrt(3) (1 - 2 |noise_k|)
+// (mean near 0) makes crests of its zeros (Musgrave, in "Texturing and Modeling: A Procedural Approach").
 //
 // Being a function of the position in space it has no poles and no seams. Integer hashing, additions and products only:
 // the same bits on every machine.

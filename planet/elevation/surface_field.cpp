@@ -26,7 +26,8 @@ void drown(std::vector<Sample>& samples, Sample water, const Raster& mask) {
     for (int row = 0; row < mask.height; ++row)
         for (int column = 0; column < mask.width; ++column, ++i) {
             const double land = mask.at(column, row);
-            if (land == 0) samples[i] = water;
+            if (land == 0)
+                samples[i] = water;
             else if (land != 1 && !std::isnan(land))
                 throw Error(Fault::bad_data, mask.name,
                             "holds " + std::to_string(land) + " at column " + std::to_string(column) + ", row " +
@@ -39,8 +40,10 @@ void drown(std::vector<Sample>& samples, Sample water, const Raster& mask) {
 
 std::shared_ptr<const RasterField> make_surface_field(Raster heights, const Raster& land_mask, VerticalDatum datum) {
     check_same_grid(heights, land_mask);
-    if (auto* shorts = std::get_if<std::vector<std::int16_t>>(&heights.samples)) drown(*shorts, water_sample, land_mask);
-    else drown(std::get<std::vector<float>>(heights.samples), -std::numeric_limits<float>::infinity(), land_mask);
+    if (auto* shorts = std::get_if<std::vector<std::int16_t>>(&heights.samples))
+        drown(*shorts, water_sample, land_mask);
+    else
+        drown(std::get<std::vector<float>>(heights.samples), -std::numeric_limits<float>::infinity(), land_mask);
     Sha256 sum;
     for (const std::string& part : {heights.checksum, land_mask.checksum}) sum.add(part.data(), part.size());
     heights.checksum = sum.hex();
