@@ -110,9 +110,13 @@ TEST(SkyCube, ReliefIsTheSlopeOfTheField) {
                 return dvec3(static_cast<std::int8_t>(t[0]), static_cast<std::int8_t>(t[1]), static_cast<std::int8_t>(t[2])) / 254.0;
             };
             const dvec3 slope = (Wave::along - glm::dot(Wave::along, n) * n) * (Wave::amplitude / Wave::radius);
-            if (n.x > 0.95) EXPECT_EQ(at(cube), dvec3(0));
+            if (n.x > 0.95) {
+                EXPECT_EQ(at(cube), dvec3(0));
+            }
             if (n.x < 0.85) worst = std::max(worst, glm::length(at(cube) - (glm::normalize(n - slope) - n)));
-            if (glm::dot(n, Wave::along) < -0.1 && n.x < 0.85) EXPECT_EQ(at(sea), dvec3(0));
+            if (glm::dot(n, Wave::along) < -0.1 && n.x < 0.85) {
+                EXPECT_EQ(at(sea), dvec3(0));
+            }
         }
     EXPECT_LT(worst, 0.005);
 }
