@@ -26,6 +26,7 @@ void RasterField::heights(std::span<const glm::dvec3> normals, std::span<float> 
     for (std::size_t first = 0; first < normals.size(); first += std::size(at)) {
         const std::size_t n = std::min(std::size(at), normals.size() - first);
         map_.samples_from_normals(normals.subspan(first, n), {at, n});
+        for (std::size_t i = 0; i < n; ++i) surface_.prefetch(at[i]);
         for (std::size_t i = 0; i < n; ++i) out[first + i] = surface_(at[i]);
     }
 }
