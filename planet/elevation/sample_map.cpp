@@ -34,7 +34,7 @@ inline double arctangent(double y, double x) {
         1.945506571482613964425e2;
     double angle = t + t * (z * p / q) + (second ? std::numbers::pi / 4 : 0.0);
     angle = a > b ? std::numbers::pi / 2 - angle : angle;
-    angle = std::signbit(x) ? std::numbers::pi - angle : angle;
+    angle = std::copysign(1.0, x) < 0 ? std::numbers::pi - angle : angle;
     return std::copysign(angle + 0 * (a + b), y);  // NaN and infinities give NaN
 }
 
