@@ -1,0 +1,71 @@
+#pragma once
+// Drawing goes to a framebuffer object, always: there is no window to draw to.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/gl/texture.h"
+
+namespace render {
+
+/// Reversed depth, once after a context is made: near 1, far 0, cleared to 0, nearer is greater, depth in [0, 1] and
+/// not in OpenGL's [-1, 1], so that the float's fine steps near 0 lie where the distance grows. Rows stay bottom-up
+/// (GL_LOWER_LEFT).
+void set_reversed_depth();
+
+/// A colour picture with a 32-bit float depth, and more samples a pixel if wanted.
+class Framebuffer {
+  public:
+    struct Options {
+        GLenum color_format = GL_RGBA8;  ///< GL_RGBA8, GL_SRGB8_ALPHA8, GL_RGBA16F, GL_RGBA32F, ...
+        int samples = 1;                 ///< 1..Limits::samples
+        bool depth = true;
+    };
+
+    Framebuffer() = default;
+    /// Throws planet::Error: bad_usage for a side outside 1..Limits::target_size or more samples than Limits::samples,
+    /// no_graphics if the driver has no memory for it or cannot draw to the format.
+    Framebuffer(int width, int height, const Options& options);
+    Framebuffer(int width, int height) : Framebuffer(width, height, Options{}) {}
+
+    int width() const noexcept { return width_; }
+    int height() const noexcept { return height_; }
+    int samples() const noexcept { return samples_; }
+    explicit operator bool() const noexcept { return static_cast<bool>(draw_); }
+
+    /// Makes it what is drawn to, and its whole area the viewport.
+    void bind() const;
+    /// Clears colour, and depth to 0 (the far end of reversed depth). Does not depend on any state but the scissor and
+    /// the write masks.
+    void clear(float red, float green, float blue, float alpha) const;
+    /// Averages the samples into color() and takes one of them into depth(). Nothing to do for one sample.
+    void resolve() const;
+
+    /// The picture as a texture, after resolve().
+    const Texture& color() const noexcept { return color_; }
+    /// The depth as a texture (GL_DEPTH_COMPONENT32F), after resolve(); empty without depth.
+    const Texture& depth() const noexcept { return depth_; }
+
+    /// Reads colour as 8-bit RGBA, the top row first, and resolves before. Values of a float picture are clamped to
+    /// [0, 1] and rounded. Rows start every `stride_pixels` pixels; what lies between them is left alone.
+    void read_rgba8(std::span<std::uint8_t> pixels, std::size_t stride_pixels) const;
+    std::vector<std::uint8_t> read_rgba8() const;
+    /// Reads colour as four floats a pixel, the top row first.
+    std::vector<float> read_rgba_float() const;
+    /// Reads depth, the top row first: 1 near, 0 far or nothing drawn.
+    std::vector<float> read_depth() const;
+
+  private:
+    void blit_to(GLuint target, GLbitfield what) const;
+    template <class Value>
+    std::vector<Value> read(GLenum format, std::size_t components) const;
+
+    int width_ = 0, height_ = 0, samples_ = 1;
+    Texture color_, depth_;                    // one sample a pixel
+    Texture sampled_color_, sampled_depth_;    // several, if samples_ > 1
+    Handle<FramebufferKind> draw_, resolved_;  // resolved_ only if samples_ > 1
+};
+
+}  // namespace render
