@@ -53,9 +53,10 @@ constexpr std::array<NutationTerm, 13> nutation_terms{{{0, 0, 0, 0, 1, -171996, 
 }  // namespace
 
 double delta_t(UtcTime t) {
-    // 1900, 1910, ... 2020: observed (Astronomical Almanac, section K; IERS). 2030, 2040, 2050: estimates.
-    constexpr std::array<double, 16> by_decade{-2.72, 10.46, 21.16, 24.02, 24.33, 29.15, 33.15, 40.18,
-                                               50.54, 56.86, 63.83, 66.07, 69.36, 69.5,  72.5,  77.0};
+    // 1900, 1910, ... 2020: observed (Astronomical Almanac, section K; IERS). 2030 ... 2100: estimates.
+    constexpr std::array<double, 21> by_decade{-2.72, 10.46, 21.16, 24.02, 24.33, 29.15, 33.15,
+                                               40.18, 50.54, 56.86, 63.83, 66.07, 69.36, 69.5,
+                                               72.5,  77.0,  83.0,  90.0,  97.0,  105.0, 113.0};
     const double year = 2000 + days_since_j2000(t) / 365.25;
     const double decade = (year - 1900) / 10;
     if (decade >= 0 && decade < by_decade.size() - 1) {

@@ -7,8 +7,8 @@
 //   ecef   turned from `date` by the apparent sidereal time about the z axis
 //
 // Simplifications, and what they cost: UT1 = UTC (at most 0.9 s, 13.5" in longitude, and what an ISO time can tell),
-// no polar motion (0.3"), no frame bias (0.02"), nutation by 13 terms (0.05"). Within 0.3" of the IAU 2006/2000A models
-// (ERFA) from 1950 to 2050 at equal UT1 (tested).
+// no polar motion (0.3"), no frame bias (0.02"), nutation by 13 terms (0.05"). Within 0.15" of the IAU 2006/2000A
+// models (ERFA) from 1950 to 2050 at equal UT1 (tested).
 
 #include <glm/glm.hpp>
 
@@ -17,8 +17,9 @@
 namespace planet {
 
 /// TT - UT1 in seconds: how far the uniform time of the ephemerides is ahead of the Earth's rotation. Observed values,
-/// by decade, to 2026 (within 1 s); beyond, estimates (nobody can know: tens of seconds by 2100). Before 1900 and after
-/// 2050 the parabola of Morrison and Stephenson, -20 + 32 ((year - 1820) / 100)^2. A minute moves the sun 2.5".
+/// by decade, to 2026 (within 1.5 s); to 2100 estimates, which nobody can check yet. Before 1900 and after 2100 the
+/// parabola of Morrison and Stephenson, -20 + 32 ((year - 1820) / 100)^2, which does not join them smoothly. A minute
+/// moves the sun by 2.5".
 double delta_t(UtcTime t);
 
 /// Julian centuries of Terrestrial Time since J2000.

@@ -120,7 +120,7 @@ class HeaderReader {
 
     std::string line() {
         std::array<char, longest_line> buffer{};
-        if (!in_.getline(buffer.data(), buffer.size()))
+        if (!in_.getline(buffer.data(), buffer.size()) || in_.eof())
             fail("ends within its header, at line " + std::to_string(line_ + 1));
         ++line_;
         return buffer.data();
@@ -231,7 +231,8 @@ double Geoid::Grid::at(double latitude, double longitude) const {
 Geoid::Geoid(const std::filesystem::path& pgm) {
     const std::string where = pgm.string();
     std::error_code fault;
-    if (!std::filesystem::is_regular_file(pgm, fault)) throw Error(Fault::bad_data, where, "no such file", accepted);
+    if (!std::filesystem::exists(pgm, fault)) throw Error(Fault::bad_data, where, "no such file", accepted);
+    if (!std::filesystem::is_regular_file(pgm, fault)) throw Error(Fault::bad_data, where, "is not a file", accepted);
     const std::uintmax_t size = std::filesystem::file_size(pgm, fault);
     std::ifstream in(pgm, std::ios::binary);
     if (fault || !in) throw Error(Fault::bad_data, where, "cannot be opened", "a readable file");

@@ -1,6 +1,7 @@
 #pragma once
 // A tile in memory: heights and certified deviations below one cell, down to 12 bisections. See tile_layout.h.
 
+#include <bit>
 #include <bitset>
 #include <cstdint>
 #include <vector>
