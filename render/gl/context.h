@@ -6,7 +6,8 @@
 //
 // Three ways in, tried in this order: an EGL device (a GPU, else Mesa's software device), EGL on Mesa's surfaceless
 // platform, and OSMesa. None is linked; each library is opened when it is wanted. Several contexts can live in one
-// process, of one kind or of several, each current on at most one thread.
+// process, of one kind or of several, each current on at most one thread. There is no default framebuffer: bind a
+// Framebuffer before drawing, also where nothing is rasterized (transform feedback).
 
 #include <memory>
 #include <optional>
