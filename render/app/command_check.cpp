@@ -56,8 +56,13 @@ std::vector<planet::CheckRow> all_rows(Report& report) {
     for (const Part& part : parts) {
         progress.update(part.name, std::nan(""));
         const auto step = report.step(part.name);
-        const auto more = part.rows();
-        rows.insert(rows.end(), more.begin(), more.end());
+        try {
+            const auto more = part.rows();
+            rows.insert(rows.end(), more.begin(), more.end());
+        } catch (const planet::Error& error) {
+            // What cannot be measured does not hold; the rest of the certificate is still worth having.
+            rows.push_back(planet::check_row(part.name + std::string(": ") + error.what(), 1, 0, "failure"));
+        }
     }
     return rows;
 }

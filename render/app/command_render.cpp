@@ -61,7 +61,6 @@ void add_render(CLI::App& program) {
         "octaglobe render -o globe.png\n"
         "  octaglobe render --at 37.58,-105.49 --range 60km --heading 30 --pitch -25 --size 1920x1080 -o blanca.png");
     add_picture_options(*command, options->render);
-    add_elevation_options(*command, options->render);
     add_json_option(*command, options->json);
     command->final_callback([options, command] {
         RenderOptions& render = options->render;
@@ -69,6 +68,8 @@ void add_render(CLI::App& program) {
         Progress progress;
         render.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };
         Report report("render", options->json);
+        // Refuses an output that cannot be written before the work, not after it.
+        { const OutputFile writable("--output", render.output); }
         fill(report, render, draw_picture(render));
         report.write();
     });

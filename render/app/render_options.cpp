@@ -43,6 +43,17 @@ std::filesystem::path path_from_text(Where where, const std::string& text) {
     return text;
 }
 
+std::filesystem::path picture_path_from_text(Where where, const std::string& text) {
+    std::filesystem::path path = path_from_text(where, text);
+    std::string ending = path.extension().native();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"})
+        if (ending == known) return path;
+    throw planet::Error(planet::Fault::bad_usage, where, shown(text) + " has no ending of a picture",
+                        ".png, .jpg, .jpeg, .tif, .tiff, .exr");
+}
+
 void add_files(CLI::App& command, const std::string& name, const std::string& what,
                std::vector<std::filesystem::path>& files) {
     command
@@ -111,26 +122,27 @@ void add_drawing_options(CLI::App& command, RenderOptions& o) {
 
 }  // namespace
 
-void add_elevation_options(CLI::App& command, RenderOptions& o) {
-    add_files(command, "--elevation", "Rasters of heights over the default Earth, the last on top", o.elevation);
+void add_elevation_options(CLI::App& command, EarthSources& sources) {
+    add_files(command, "--elevation", "Rasters of heights over the default Earth, the last on top", sources.elevation);
     add_value(
         command, "--elevation-datum", "DATUM", "What their heights are above: egm96 or ellipsoid [egm96]",
         [&](Where where, const std::string& text) {
             constexpr planet::VerticalDatum data[] = {planet::VerticalDatum::egm96, planet::VerticalDatum::ellipsoid};
-            o.elevation_datum = data[parse_choice(where, text, {"egm96", "ellipsoid"})];
+            sources.elevation_datum = data[parse_choice(where, text, {"egm96", "ellipsoid"})];
         })
         ->needs("--elevation");
-    add_value(command, "--store", "FILE", "A baked store instead of the default Earth",
-              [&](Where where, const std::string& text) { o.store = path_from_text(where, text); })
-        ->excludes("--elevation");
 }
 
 void add_picture_options(CLI::App& command, RenderOptions& o) {
     add_view_options(command, o);
     add_drawing_options(command, o);
+    add_elevation_options(command, o.earth);
+    add_value(command, "--store", "FILE", "A baked store instead of the default Earth",
+              [&](Where where, const std::string& text) { o.store = path_from_text(where, text); })
+        ->excludes("--elevation");
     add_files(command, "--imagery", "Pictures of the whole globe, the last on top, instead of the default", o.imagery);
-    add_value(command, "-o,--output", "FILE", "The picture, in the format of its ending [globe.png]",
-              [&](Where where, const std::string& text) { o.output = path_from_text(where, text); });
+    add_value(command, "-o,--output", "FILE", "The picture: .png, .jpg, .tif or .exr [globe.png]",
+              [&](Where where, const std::string& text) { o.output = picture_path_from_text(where, text); });
 }
 
 }  // namespace render

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "planet/elevation/elevation_field.h"
 #include "planet/frames.h"
 #include "planet/geodesy/utc_time.h"
+#include "render/app/earth.h"
 #include "render/app/values.h"
 #include "render/gl/context.h"
 
@@ -54,8 +54,7 @@ struct RenderOptions {
     int threads = 0;                   ///< 1..256; 0: as many as there are processors. Changes no byte
     BackendChoice backend = BackendChoice::automatic;
 
-    std::vector<std::filesystem::path> elevation{};  ///< rasters over the default Earth, later on top
-    planet::VerticalDatum elevation_datum = planet::VerticalDatum::egm96;  ///< of all of them
+    EarthSources earth{};
     std::optional<std::filesystem::path> store{};  ///< a baked store instead of the default Earth
     std::vector<std::filesystem::path> imagery{};  ///< pictures of the whole globe, later on top
 
@@ -67,11 +66,11 @@ struct RenderOptions {
     bool shows(Overlay overlay) const { return (show & static_cast<std::uint32_t>(overlay)) != 0; }
 };
 
-/// Adds the options of the source of elevation (--elevation, --elevation-datum, --store), which render and query share.
-/// `options` must live as long as the parser. Values are checked while parsing (planet::Error, bad_usage).
-void add_elevation_options(CLI::App& command, RenderOptions& options);
+/// Adds --elevation and --elevation-datum. What the options are put into must live as long as the parser. Values are
+/// checked while parsing (planet::Error, bad_usage).
+void add_elevation_options(CLI::App& command, EarthSources& sources);
 
-/// Adds all the others.
+/// Adds all options of a picture but --json.
 void add_picture_options(CLI::App& command, RenderOptions& options);
 
 }  // namespace render

@@ -106,7 +106,7 @@ TEST(Values, ChoicesAreExact) {
 }
 
 TEST(Values, QuotingIsSafeToPrint) {
-    EXPECT_EQ(shown("a\x1b[31m\n\xff"), "'a?[31m??'");
+    EXPECT_EQ(shown("a\x1b[31m\n\xff"), "'a?[31m\?\?'");
     EXPECT_EQ(shown(std::string(1000, 'x')).size(), 65u);
 }
 
