@@ -50,7 +50,8 @@ nlohmann::ordered_json json_from_rows(const std::vector<planet::CheckRow>& rows)
     return list;
 }
 
-std::vector<planet::CheckRow> all_rows(Report& report) {
+/// @param reasons gets a line for each part that could not be measured
+std::vector<planet::CheckRow> all_rows(Report& report, std::vector<std::string>& reasons) {
     Progress progress;
     std::vector<planet::CheckRow> rows;
     for (const Part& part : parts) {
@@ -61,7 +62,8 @@ std::vector<planet::CheckRow> all_rows(Report& report) {
             rows.insert(rows.end(), more.begin(), more.end());
         } catch (const planet::Error& error) {
             // What cannot be measured does not hold; the rest of the certificate is still worth having.
-            rows.push_back(planet::check_row(part.name + std::string(": ") + error.what(), 1, 0, "failure"));
+            rows.push_back(planet::check_row(part.name + std::string(" could not be checked"), 1, 0, "failure"));
+            reasons.push_back(error.what());
         }
     }
     return rows;
@@ -69,13 +71,16 @@ std::vector<planet::CheckRow> all_rows(Report& report) {
 
 void run(const std::string& json) {
     Report report("check", json);
-    const auto rows = all_rows(report);
+    std::vector<std::string> reasons;
+    const auto rows = all_rows(report, reasons);
     const auto failed = std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !row.passed; });
     print(rows);
+    for (const auto& reason : reasons) std::cout << reason << '\n';
     report.set("checks", rows.size());
     report.set("failed", failed);
     report.set("passed", failed == 0);
     report.set("rows", json_from_rows(rows));
+    report.set("reasons", reasons);
     report.write();
     if (failed > 0)
         throw planet::Error(planet::Fault::check_failed, "check",
