@@ -45,6 +45,8 @@ class ImageDriver {
     virtual std::string version() const = 0;
 };
 
-const ImageDriver& image_driver();
+/// For one format ("png", "jpg", ...; empty: any). PNG has a module of its own that is faster to open; where that is
+/// missing OpenImageIO does it too. Throws Error if there is no module for it.
+const ImageDriver& image_driver(const std::string& format);
 
 }  // namespace planet

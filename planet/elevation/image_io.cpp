@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <new>
 
 #include "planet/elevation/image_driver.h"
@@ -72,13 +73,19 @@ class LinearRows {
     std::vector<std::byte> raw_;
 };
 
+bool is_png(const std::string& path) {
+    char start[8] = {};
+    std::ifstream(path, std::ios::binary).read(start, sizeof start);
+    return std::memcmp(start, "\x89PNG\r\n\x1a\n", sizeof start) == 0;
+}
+
 std::unique_ptr<ImageSource> open_source(const std::string& path) {
     std::error_code failed;
     const auto status = std::filesystem::status(path, failed);
     if (!std::filesystem::exists(status)) throw Error(Fault::bad_data, path, "no such file", a_picture);
     if (!std::filesystem::is_regular_file(status)) throw Error(Fault::bad_data, path, "is not a file", a_picture);
     if (std::filesystem::file_size(path, failed) == 0) throw Error(Fault::bad_data, path, "is empty", a_picture);
-    return image_driver().open(path);
+    return image_driver(is_png(path) ? "png" : "").open(path);
 }
 
 int reduction_of(const ImageSource& source, const ImageOptions& options, const std::string& path) {
@@ -153,11 +160,17 @@ auto with_memory(const std::string& path, Read read) {
 
 }  // namespace
 
-const ImageDriver& image_driver() {
+const ImageDriver& image_driver(const std::string& format) {
     using Factory = const ImageDriver* (*)();
-    static const ImageDriver* const found = reinterpret_cast<Factory>(
-        module_symbol("octaglobe_oiio", "octaglobe_oiio_1", "reading and writing pictures"))();
-    return *found;
+    constexpr const char* what = "reading and writing pictures";
+    static const ImageDriver* const png =
+        has_module("octaglobe_png")
+            ? reinterpret_cast<Factory>(module_symbol("octaglobe_png", "octaglobe_png_1", what))()
+            : nullptr;
+    if (format == "png" && png) return *png;
+    static const ImageDriver* const any =
+        reinterpret_cast<Factory>(module_symbol("octaglobe_oiio", "octaglobe_oiio_1", what))();
+    return *any;
 }
 
 Image read_image(const std::string& path, const ImageOptions& options) {
@@ -177,7 +190,7 @@ FloatImage read_float_image(const std::string& path, const ImageOptions& options
 }
 
 std::string image_library_version() {
-    return image_driver().version();
+    return image_driver("").version();
 }
 
 }  // namespace planet

@@ -83,7 +83,7 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height, int cha
     state_->rows_left = height;
     state_->temporary = temporary_beside(state_->file);
     d.file = state_->temporary.string();
-    state_->sink = image_driver().create(d);
+    state_->sink = image_driver(d.format).create(d);
 }
 
 ImageWriter::~ImageWriter() = default;

@@ -47,6 +47,13 @@ void* open_module(const std::string& name, const char* what) {
 
 }  // namespace
 
+bool has_module(const char* name) {
+    std::error_code failed;
+    for (const auto& folder : module_folders())
+        if (std::filesystem::exists(folder / (std::string(name) + ".so"), failed)) return true;
+    return false;
+}
+
 void* module_symbol(const char* name, const char* symbol, const char* what) {
     static std::mutex mutex;
     static std::map<std::string, void*> open;

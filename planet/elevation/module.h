@@ -12,4 +12,7 @@ namespace planet {
 /// @param what  what it is for, e.g. "reading elevation files"
 void* module_symbol(const char* name, const char* symbol, const char* what);
 
+/// Whether there is such a module in one of those folders.
+bool has_module(const char* name);
+
 }  // namespace planet

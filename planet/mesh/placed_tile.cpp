@@ -18,8 +18,12 @@ std::vector<glm::dvec3> tile_normals(LocationCode root, int depth) {
     return n;
 }
 
-PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, const std::vector<float>& undulation)
-    : root(tile.root), depth(tile.depth), split(std::size_t{1} << tile.depth), damaged(tile.damaged) {
+PlacedTile::PlacedTile(const Tile& tile, const Placement& placement)
+    : root(tile.root),
+      depth(tile.depth),
+      split(std::size_t{1} << tile.depth),
+      height(tile.height),
+      damaged(tile.damaged) {
     if (tile.child_exists.any()) {
         children_ = std::make_unique<std::atomic<const PlacedTile*>[]>(tile_cells);
         for (unsigned k = 0; k < tile_cells; ++k)
@@ -30,7 +34,7 @@ PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, const std::
     std::vector<glm::vec3> rounded(normals.size());
     position.resize(normals.size());
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        const double N = undulation.empty() ? 0.0 : static_cast<double>(undulation[v]);
+        const GeoidUndulation N = tile.undulation.empty() ? GeoidUndulation{} : tile.undulation[v];
         const glm::dvec3 p = placement.ecef(normals[v], static_cast<double>(tile.height[v]), N);
         position[v] = grid_from_ecef(p);
         rounded[v] = glm::vec3(p);
@@ -49,6 +53,15 @@ PlacedTile::PlacedTile(const Tile& tile, const Placement& placement, const std::
                     std::nextafter(static_cast<float>(r), std::numeric_limits<float>::max())};
         if (placement.exaggeration == 1.0) split[i].radius = tile.radius[i];
     }
+}
+
+bool PlacedTile::has_child_below(unsigned i) const {
+    if (!children_) return false;
+    const int below = tile_levels + 1 - static_cast<int>(std::bit_width(i));
+    const unsigned first = (i << below) - tile_cells, end = ((i + 1) << below) - tile_cells;
+    for (unsigned k = first; k < end; ++k)
+        if (children_[k].load(std::memory_order_relaxed) != this) return true;
+    return false;
 }
 
 const PlacedTile* PlacedTile::child(const TileSource& source, unsigned k) const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "planet/geodesy/ellipsoid.h"
 #include "planet/mesh/grid.h"
 #include "planet/mesh/tile.h"
 
@@ -18,18 +19,14 @@ struct SplitRecord {
     float radius;
 };
 
-/// Puts heights on the planet: the position of a geodetic normal at a height above the store's datum. Pure: the same
-/// bits for the same arguments.
+/// Puts heights on the planet.
 struct Placement {
-    double a = 6378137.0, b = 6356752.314245179;  ///< semi-axes, metres
-    double exaggeration = 1;                      ///< of the height above the datum; the geoid is not exaggerated
+    Ellipsoid ellipsoid = wgs84;
+    double exaggeration = 1;  ///< >= 0, of the height above the datum; the geoid is not exaggerated
 
-    /// @param n unit geodetic normal; @param h height above the datum; @param undulation datum above the ellipsoid
-    glm::dvec3 ecef(const glm::dvec3& n, double h, double undulation) const {
-        const double a2 = a * a, b2 = b * b;
-        const double s = 1.0 / std::sqrt(a2 * (n.x * n.x + n.y * n.y) + b2 * n.z * n.z);
-        const double up = h * exaggeration + undulation;
-        return {(a2 * s + up) * n.x, (a2 * s + up) * n.y, (b2 * s + up) * n.z};
+    /// @param n unit geodetic normal; @param H height above the datum, metres; @param N datum above the ellipsoid
+    glm::dvec3 ecef(const glm::dvec3& n, double H, GeoidUndulation N) const {
+        return ecef_from_normal(ellipsoid, n, {H * exaggeration + N.m});
     }
 };
 
@@ -37,14 +34,13 @@ class TileSource;
 
 class PlacedTile {
   public:
-    /// @param undulation by vertex index: the datum's height above the ellipsoid at each lattice vertex, metres; empty:
-    /// 0
-    PlacedTile(const Tile& tile, const Placement& placement, const std::vector<float>& undulation);
+    PlacedTile(const Tile& tile, const Placement& placement);
 
     LocationCode root;
     int depth;
     std::vector<SplitRecord> split;      ///< by local index, 2^depth
     std::vector<GridPosition> position;  ///< by vertex index
+    std::vector<float> height;           ///< by vertex index, metres above the datum, not exaggerated
     bool damaged;
 
     /// The tile below the cell at relative level 12 and position k, or nullptr if there is none: asked of the source
@@ -52,9 +48,12 @@ class PlacedTile {
     /// @param k 0..4095
     const PlacedTile* child(const TileSource& source, unsigned k) const;
 
+    /// Whether the tile has a tile below its local cell i.
+    bool has_child_below(unsigned i) const;
+
     std::size_t bytes() const {
         return sizeof *this + split.size() * sizeof(SplitRecord) + position.size() * sizeof(GridPosition) +
-               (children_ ? tile_cells * sizeof(children_[0]) : 0);
+               height.size() * sizeof(float) + (children_ ? tile_cells * sizeof(children_[0]) : 0);
     }
 
   private:

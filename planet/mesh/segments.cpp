@@ -102,14 +102,24 @@ class SegmentBuilder {
         const LocationCode patch = diamond(code);
         const auto first_index = static_cast<std::uint32_t>(strip_.indices().size());
         first_vertex_ = vertices.size();
+        const auto first_leaf = static_cast<std::uint32_t>(leaf_levels.size());
         begun_ = false;
-        leaves_ = 0;
         frames_.assign(1, frame_of_root(*root.tile, root.local, patch != code));
         room();
         Walk walk(tiles_, view_.test, *this);
         walk.cell(*root.tile, root.local, strip_state_of_segment(code));
-        segments.push_back({code, patch, root.distance, static_cast<std::uint32_t>(first_vertex_), first_index,
-                            static_cast<std::uint32_t>(strip_.indices().size()) - first_index, leaves_});
+        const int tile_level = root.tile->root.bisection_level();
+        segments.push_back(
+            {.root = code,
+             .patch = patch,
+             .distance_m = root.distance,
+             .first_vertex = static_cast<std::uint32_t>(first_vertex_),
+             .first_index = first_index,
+             .index_count = static_cast<std::uint32_t>(strip_.indices().size()) - first_index,
+             .leaves = static_cast<std::uint32_t>(leaf_levels.size()) - first_leaf,
+             .first_leaf = first_leaf,
+             .detailed = tile_level >= view_.detail_level ||
+                         (tile_level + tile_levels >= view_.detail_level && root.tile->has_child_below(root.local))});
     }
 
     void tile(const PlacedTile& t) {
@@ -141,12 +151,13 @@ class SegmentBuilder {
         }
         const StripStep step = strip_steps[state];
         strip_.step(step, [&] { return add(t, corner[step.corner]); });
-        ++leaves_;
+        leaf_levels.push_back(static_cast<std::uint8_t>(code_of(t, i).bisection_level()));
         if (!(i >> t.depth)) certify(t.split[i]);
     }
 
     std::vector<Segment> segments;
     GrowingArray<SegmentVertex> vertices;
+    std::vector<std::uint8_t> leaf_levels;
     std::size_t tile_visits = 0;
     bool damaged = false;
     double ratio_max = 0;
@@ -162,7 +173,8 @@ class SegmentBuilder {
     std::uint32_t add(const PlacedTile& t, std::uint16_t vertex) {
         std::int64_t u = 0, v = 0;
         frames_.back().at(layout_.lattice[vertex][0], layout_.lattice[vertex][1], u, v);
-        vertices.push({t.position[vertex], static_cast<std::uint16_t>(u), static_cast<std::uint16_t>(v)});
+        vertices.push(
+            {t.position[vertex], static_cast<std::uint16_t>(u), static_cast<std::uint16_t>(v), t.height[vertex]});
         return static_cast<std::uint32_t>(vertices.size() - 1 - first_vertex_);
     }
 
@@ -179,7 +191,6 @@ class SegmentBuilder {
     StripWriter strip_;
     std::vector<Frame> frames_;
     std::size_t first_vertex_ = 0;
-    std::uint32_t leaves_ = 0;
     bool begun_ = false;
 };
 
@@ -212,20 +223,23 @@ void Segments::build(const TileSource& tiles, const SegmentView& view, int threa
     segments_.clear();
     vertices_.clear();
     indices_.clear();
-    leaves_ = tiles_ = 0;
+    leaf_levels_.clear();
+    tiles_ = 0;
     damaged_ = false;
     ratio_max_ = 0;
     for (const auto& b : runs) {
         const auto vertex = static_cast<std::uint32_t>(vertices_.size());
         const auto index = static_cast<std::uint32_t>(indices_.size());
+        const auto leaf = static_cast<std::uint32_t>(leaf_levels_.size());
         for (Segment s : b->segments) {
             s.first_vertex += vertex;
             s.first_index += index;
-            leaves_ += s.leaves;
+            s.first_leaf += leaf;
             segments_.push_back(s);
         }
         vertices_.insert(vertices_.end(), b->vertices.span().begin(), b->vertices.span().end());
         indices_.insert(indices_.end(), b->indices().begin(), b->indices().end());
+        leaf_levels_.insert(leaf_levels_.end(), b->leaf_levels.begin(), b->leaf_levels.end());
         tiles_ += b->tile_visits;
         damaged_ = damaged_ || b->damaged;
         ratio_max_ = std::max(ratio_max_, b->ratio_max);

@@ -13,12 +13,13 @@
 
 namespace planet {
 
-/// 20 bytes. u, v: 32768 = 1, in the frame of the diamond below.
+/// 24 bytes, as the GPU takes them.
 struct SegmentVertex {
     GridPosition position;
-    std::uint16_t u, v;
+    std::uint16_t u, v;  ///< 32768 = 1, in the frame of the segment's patch
+    float height;        ///< metres above the store's datum, not exaggerated
 };
-static_assert(sizeof(SegmentVertex) == 20);
+static_assert(sizeof(SegmentVertex) == 24);
 
 struct Segment {
     LocationCode root;
@@ -28,6 +29,8 @@ struct Segment {
     double distance_m;  ///< least distance from the eye to anything in the segment; a lower bound
     std::uint32_t first_vertex, first_index, index_count;
     std::uint32_t leaves;
+    std::uint32_t first_leaf;  ///< into leaf_levels()
+    bool detailed;             ///< holds tiles rooted at SegmentView::detail_level or deeper
 };
 
 struct SegmentView {
@@ -37,6 +40,7 @@ struct SegmentView {
     /// bounds the number of lattice samples per pixel from below.
     double segment_angle = 0.1;
     double radius_m = 6371008.8;  ///< of the planet
+    int detail_level = 24;        ///< bisection level, a multiple of 12; see Segment::detailed
 };
 
 /// Strips and vertices of all segments in view, in Sierpinski order. Keeps its storage from one use to the next.
@@ -49,7 +53,8 @@ class Segments {
     std::span<const SegmentVertex> vertices() const { return vertices_; }
     /// One triangle strip a segment, indices relative to first_vertex.
     std::span<const std::uint32_t> indices() const { return indices_; }
-    std::size_t leaves() const { return leaves_; }
+    /// The bisection level of each leaf, in the order of the strips.
+    std::span<const std::uint8_t> leaf_levels() const { return leaf_levels_; }
     /// How often the walk entered a tile below a segment's own, and whether one stands in for a damaged tile.
     std::size_t tiles() const { return tiles_; }
     bool damaged() const { return damaged_; }
@@ -60,7 +65,8 @@ class Segments {
     std::vector<Segment> segments_;
     std::vector<SegmentVertex> vertices_;
     std::vector<std::uint32_t> indices_;
-    std::size_t leaves_ = 0, tiles_ = 0;
+    std::vector<std::uint8_t> leaf_levels_;
+    std::size_t tiles_ = 0;
     bool damaged_ = false;
     double ratio_max_ = 0;
 };

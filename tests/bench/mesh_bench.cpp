@@ -63,7 +63,7 @@ BENCHMARK(neighbor_by_recursion);
 
 struct Scene {
     testing::BallTiles tiles{40, 0.02};
-    SplitTest test{Placement{}.ecef(normal_from_geodetic(0.65, -1.84), 0, 637.0), 0};
+    SplitTest test{ecef_from_normal(wgs84, normal_from_geodetic(0.65, -1.84), {637.0}), 0};
 
     Scene() {  // K for one million leaves
         const auto leaves = [this](double K) {

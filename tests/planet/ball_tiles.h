@@ -23,11 +23,11 @@ class BallTiles final : public TileSource {
         placement_.exaggeration = exaggeration;
         double radius = 0;
         for (int level = finest_level; level >= 0; --level) {
-            const double side = cell_metrics(level).side_max * placement_.a;
+            const double side = cell_metrics(level).side_max * placement_.ellipsoid.a;
             radius +=
                 side * 1.01 + 2 * 9000.0 * std::min(1.0, side / 1e5);  // |m - m_child| is below a side, plus relief
             radius_[level] = static_cast<float>(radius);
-            deviation_[level] = static_cast<float>(side * side / (8 * placement_.a) * 1.1 + roughness * side);
+            deviation_[level] = static_cast<float>(side * side / (8 * placement_.ellipsoid.a) * 1.1 + roughness * side);
         }
     }
 
@@ -54,7 +54,7 @@ class BallTiles final : public TileSource {
             t.deviation[i] = deviation_.at(level);
             t.radius[i] = radius_.at(level);
         }
-        return std::make_unique<PlacedTile>(t, placement_, std::vector<float>{});
+        return std::make_unique<PlacedTile>(t, placement_);
     }
 
     int finest_;

@@ -94,7 +94,7 @@ struct NamedView {
 
 void expect_closed(const TileSource& tiles, double latitude, double longitude, double height, double K) {
     const glm::dvec3 n = normal_from_geodetic(latitude * degrees, longitude * degrees);
-    const glm::dvec3 eye = Placement{}.ecef(n, 0, height);
+    const glm::dvec3 eye = ecef_from_normal(wgs84, n, {height});
     const TriangleMesh mesh = refine_planet(tiles, {eye, K});
     const MeshCheck c = check(mesh);
     ASSERT_TRUE(c.ok()) << latitude << "," << longitude << " at " << height << " m: " << c.summary();

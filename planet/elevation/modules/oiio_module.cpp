@@ -82,6 +82,7 @@ class OiioSink : public ImageSink {
         ImageSpec spec(d.width, d.height, d.channels, type_);
         spec.attribute("oiio:ColorSpace", d.type == SampleType::float32 ? "Linear" : "sRGB");
         spec.attribute("oiio:UnassociatedAlpha", 1);
+        spec.attribute("DateTime", "1970:01:01 00:00:00");  // or it would add the present one
         if (d.format == "png") spec.attribute("png:compressionLevel", d.options.png_compression);
         if (d.format == "jpg") spec.attribute("Compression", "jpeg:" + std::to_string(d.options.jpeg_quality));
         if (d.format == "tif" || d.format == "exr") spec.attribute("Compression", "zip");
