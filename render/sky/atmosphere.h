@@ -19,7 +19,7 @@
 //   0     air_table        ViewTable::air                RGBA32F 3-D   linear, clamp on all axes, no mips
 //   1     sun_light_table  AtmosphereTables::sun_light   RGBA32F 2-D   linear, clamp, no mips
 //   2     sky_light_table  AtmosphereTables::sky_light   RGBA32F 2-D   linear, clamp, no mips
-//   3     noise_table      make_noise_volume             RGBA8 3-D     trilinear with mips, repeat on all axes
+//   3     noise_table      make_noise_levels             RGBA8 3-D     trilinear with mips, repeat on all axes
 //   uniform block SkyBlock at binding 1, std140: ViewTable::uniforms (SkyUniforms), byte for byte
 //
 // (RGBA16F holds every table too, and is as fast; floats upload without a conversion. Not used from afar: 3.)
@@ -140,8 +140,11 @@ inline bool needs_close_up(const SkyUniforms& uniforms, double height, double pi
 glm::dvec3 sphere_from_ecef(const Atmosphere& air, const glm::dvec3& v);
 
 /// RGBA8 noise that repeats, side^3 texels, x fastest: rgb the gradient (0.5 + 0.5 g), a the value; several octaves.
-/// Levels from the finest down to 1 texel, each the mean of the one before. About 60 ms for 64: made once and kept.
+/// About 50 ms for 64: made once and kept.
 /// @param side a power of two, 16..128
-std::vector<std::vector<std::uint8_t>> make_noise_volume(int side = 64);
+std::vector<std::uint8_t> make_noise_volume(int side = 64);
+
+/// The same with its mip chain: levels from the finest down to 1 texel, each the mean of eight of the one before.
+std::vector<std::vector<std::uint8_t>> make_noise_levels(int side = 64);
 
 }  // namespace render

@@ -86,15 +86,14 @@ std::vector<std::uint8_t> half(const std::vector<std::uint8_t>& fine, std::uint3
 
 }  // namespace
 
-std::vector<std::vector<std::uint8_t>> make_noise_volume(int side) {
+std::vector<std::uint8_t> make_noise_volume(int side) {
     assert(side >= 16 && side <= 128 && (side & (side - 1)) == 0);
     const auto n = static_cast<std::uint32_t>(side), mask = n - 1;
     const std::vector<float> field = octaves(n);
     const auto value = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
         return field[(std::size_t{z & mask} * n + (y & mask)) * n + (x & mask)];
     };
-    std::vector<std::vector<std::uint8_t>> levels(1);
-    std::vector<std::uint8_t>& bytes = levels[0];
+    std::vector<std::uint8_t> bytes;
     bytes.reserve(field.size() * 4);
     for (std::uint32_t z = 0; z < n; ++z)
         for (std::uint32_t y = 0; y < n; ++y)
@@ -104,7 +103,12 @@ std::vector<std::vector<std::uint8_t>> make_noise_volume(int side) {
                 bytes.push_back(byte_of(0.8f * (value(x, y, z + 1) - value(x, y, z - 1))));
                 bytes.push_back(byte_of(0.9f * value(x, y, z)));
             }
-    for (std::uint32_t m = n / 2; m > 0; m /= 2) levels.push_back(half(levels.back(), m));
+    return bytes;
+}
+
+std::vector<std::vector<std::uint8_t>> make_noise_levels(int side) {
+    std::vector<std::vector<std::uint8_t>> levels{make_noise_volume(side)};
+    for (auto m = static_cast<std::uint32_t>(side) / 2; m > 0; m /= 2) levels.push_back(half(levels.back(), m));
     return levels;
 }
 

@@ -21,9 +21,9 @@ using reference::Shading;
 struct Scene {
     AtmosphereTables tables = make_tables();
     ViewTable view = make_view_table(tables, {6378137.0 + 100e3, 0, 0}, {1, 0, 0});
-    std::vector<std::vector<std::uint8_t>> noise = make_noise_volume(32);
+    std::vector<std::uint8_t> noise = make_noise_volume(32);
     Shading shading{view.uniforms, tables, view};
-    Scene() { shading.noise_table = {noise[0].data(), 32}; }
+    Scene() { shading.noise_table = {noise.data(), 32}; }
 };
 Scene& scene() {
     static Scene made;
@@ -128,7 +128,7 @@ TEST(SkyTone, DitherIsSmallAndLeavesTheMean) {
 
 TEST(SkyNoise, RepeatsWithoutSeamAndIsCentred) {
     const int n = 64;
-    const auto levels = make_noise_volume(n);
+    const auto levels = make_noise_levels(n);
     const std::vector<std::uint8_t>& noise = levels[0];
     ASSERT_EQ(levels.size(), 7u);
     EXPECT_EQ(levels[6].size(), 4u);
