@@ -1,6 +1,7 @@
 #pragma once
 // A tile in memory: heights and certified deviations below one cell, down to 12 bisections. See tile_layout.h.
 
+#include <bit>
 #include <bitset>
 #include <cstdint>
 #include <vector>
@@ -19,6 +20,8 @@ struct Tile {
     int depth = 0;      ///< 1..12: cells with local index < 2^depth can be split
     /// By vertex index, vertex_count[depth] of them, metres: the height above the store's datum (H for egm96).
     std::vector<float> height;
+    /// By vertex index, metres: the datum above the ellipsoid (N for egm96), so that h = height + undulation. Empty: 0.
+    std::vector<float> undulation;
     /// By local index, 2^depth of them (0 unused): the largest distance in metres, along the geodetic normal, between
     /// the plane of either cell of the diamond and any finest vertex below; saturated.
     std::vector<float> deviation;

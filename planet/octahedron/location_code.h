@@ -54,7 +54,7 @@ class LocationCode {
 
     constexpr std::uint64_t bits() const { return bits_; }
     /// 0..60: how many bisections below its face.
-    constexpr int bisection_level() const { return std::bit_width(bits_) - 4; }
+    constexpr int bisection_level() const { return static_cast<int>(std::bit_width(bits_)) - 4; }
     /// Quadtree level: two bisections each.
     constexpr int level() const { return bisection_level() / 2; }
     constexpr int face() const { return static_cast<int>(bits_ >> bisection_level()) & 7; }

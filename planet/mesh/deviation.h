@@ -1,0 +1,95 @@
+#pragma once
+// Deviation: how far, along the geodetic normal of a vertex, the plane of a coarser cell passes from it.
+//
+//         A---____                    t = (A - P) . N / (n . N)       P   the vertex at its true height, ecef
+//        /   |    ----___   plane                                     n   its geodetic normal
+//       /    | t         ----B                                        A   a corner of the cell at its true height
+//      /     P  n                                                     N   the normal of the plane through the corners
+//
+// which is (A - p0) . N / (n . N) - h with p0 the foot of P on the ellipsoid. The plane is extended, so t is defined
+// for vertices on the cell's sides, whose normals may pass it by; the curvature of the planet is in it. The deviation
+// of a cell is the largest |t| over every vertex of the finest lattice in it, sides included.
+//
+// Everything here is elementwise arithmetic in double without contraction: the same bits for any vector width.
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "planet/mesh/placed_tile.h"
+#include "planet/mesh/tile_layout.h"
+#include "planet/octahedron/octahedron_map.h"
+
+namespace planet {
+
+/// Added to every deviation before it is rounded up to float: bounds the rounding of t on planets up to 10,000 km, so
+/// that what is stored is a bound, and what exists is never 0.
+inline constexpr double deviation_rounding_m = 0x1p-26;
+
+/// The lattice of a tile at its true heights. Arrays are by vertex index, padded with NaN to a multiple of 8. Made to
+/// be used again and again: place() keeps the memory.
+class TileLattice {
+  public:
+    /// Sets the normals of the vertices, `depth` levels below a cell with these corners. @param depth 1..12
+    void set_normals(const Corners& root, int depth);
+    /// Sets the positions. @param height above the datum, @param undulation of the datum above the ellipsoid or empty:
+    /// by vertex index, metres. @param exists by local index, 1 where the cell's split vertex exists; empty: all do.
+    /// A vertex that does not exist gets NaN coordinates, and no deviation heeds it.
+    void set_positions(const Placement& placement, std::span<const float> height, std::span<const float> undulation,
+                       std::span<const std::uint8_t> exists);
+
+    int depth() const { return depth_; }
+    std::size_t size() const { return size_; }
+    glm::dvec3 normal(std::size_t v) const { return {n_[0][v], n_[1][v], n_[2][v]}; }
+    glm::dvec3 position(std::size_t v) const { return {p_[0][v], p_[1][v], p_[2][v]}; }
+    /// Positions rounded to float: m of the split test, the same bits as in a PlacedTile at exaggeration 1.
+    std::span<const glm::vec3> rounded() const { return rounded_; }
+    /// One coordinate (0..2) of every normal or position, padded.
+    const double* normals(int axis) const { return n_[axis].data(); }
+    const double* positions(int axis) const { return p_[axis].data(); }
+
+  private:
+    int depth_ = 0;
+    std::size_t size_ = 0;
+    std::vector<double> n_[3], p_[3];
+    std::vector<glm::vec3> rounded_;
+};
+
+/// The plane of a cell: a corner and the (unnormalized) normal.
+struct CellPlane {
+    CellPlane(const glm::dvec3& left, const glm::dvec3& right, const glm::dvec3& apex)
+        : corner(left), normal(glm::cross(right - left, apex - left)) {}
+    glm::dvec3 corner, normal;
+
+    /// t of a point with geodetic normal n, metres, positive where the plane passes above.
+    double above(const glm::dvec3& point, const glm::dvec3& n) const {
+        return glm::dot(corner - point, normal) / glm::dot(n, normal);
+    }
+};
+
+/// Rounds up to float, with deviation_rounding_m added.
+float certified_deviation(double worst);
+
+/// The deviation of every cell of the tile over the tile's own vertices, by local index into 2^depth values, metres,
+/// rounded up (certified_deviation). Cells that do not exist get what is meaningless.
+void own_deviation(const TileLattice& lattice, std::span<float> deviation);
+
+/// The largest |t| of any vertex of the tile but its root's corners (those belong to the parent's lattice).
+double deviation_from(const TileLattice& lattice, const CellPlane& plane);
+
+/// Largest distance from the rounded split vertex of cell i to the true corners of the cell, metres.
+double corner_distance(const TileLattice& lattice, unsigned i);
+
+/// The radius of a diamond given a child diamond, m and m_c their rounded split vertices. The slack keeps the split
+/// test nested when it is evaluated in double: eyes within 50,000 km round by less than 2^-20 of any radius.
+inline double radius_over(const glm::vec3& m, const glm::vec3& m_c, float child_radius) {
+    const double dx = static_cast<double>(m.x) - static_cast<double>(m_c.x),
+                 dy = static_cast<double>(m.y) - static_cast<double>(m_c.y),
+                 dz = static_cast<double>(m.z) - static_cast<double>(m_c.z);
+    return std::sqrt(dx * dx + dy * dy + dz * dz) + static_cast<double>(child_radius);
+}
+/// Rounds a radius up to float, slack of 2^-20 included.
+float certified_radius(double radius);
+
+}  // namespace planet

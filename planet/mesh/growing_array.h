@@ -1,0 +1,43 @@
+#pragma once
+// Output storage of the walk: grows in large steps, is never cleared, costs no check per element.
+
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+namespace planet {
+
+/// An array of trivial elements that keeps its storage from one use to the next. Elements beyond size() are garbage.
+template <class T>
+class GrowingArray {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+  public:
+    /// Room for `more` elements behind the present ones.
+    void reserve_more(std::size_t more) {
+        if (size_ + more <= capacity_) return;
+        const std::size_t capacity = 2 * (size_ + more);
+        auto grown = std::make_unique_for_overwrite<T[]>(capacity);
+        if (size_ != 0) std::memcpy(grown.get(), data_.get(), size_ * sizeof(T));
+        data_ = std::move(grown);
+        capacity_ = capacity;
+    }
+    /// Appends; room must have been made.
+    void push(const T& value) { data_[size_++] = value; }
+    void pop() { --size_; }
+    void clear() { size_ = 0; }
+
+    const T& back() const { return data_[size_ - 1]; }
+    const T& operator[](std::size_t i) const { return data_[i]; }
+    const T* data() const { return data_.get(); }
+    std::size_t size() const { return size_; }
+    std::span<const T> span() const { return {data_.get(), size_}; }
+
+  private:
+    std::unique_ptr<T[]> data_;
+    std::size_t size_ = 0, capacity_ = 0;
+};
+
+}  // namespace planet

@@ -1,0 +1,77 @@
+#include "planet/mesh/placed_tile.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "planet/octahedron/octahedron_map.h"
+
+namespace planet {
+
+std::vector<glm::dvec3> tile_normals(LocationCode root, int depth) {
+    const TileLayout& layout = tile_layout();
+    std::vector<glm::dvec3> n(layout.vertex_count[static_cast<std::size_t>(depth)]);
+    const Corners c = corners(root);
+    n[0] = c.left;
+    n[1] = c.right;
+    n[2] = c.apex;
+    for (std::size_t v = 3; v < n.size(); ++v) n[v] = split_vertex(n[layout.ends[v][0]], n[layout.ends[v][1]]);
+    return n;
+}
+
+PlacedTile::PlacedTile(const Tile& tile, const Placement& placement)
+    : root(tile.root),
+      depth(tile.depth),
+      split(std::size_t{1} << tile.depth),
+      height(tile.height),
+      damaged(tile.damaged) {
+    if (tile.child_exists.any()) {
+        children_ = std::make_unique<std::atomic<const PlacedTile*>[]>(tile_cells);
+        for (unsigned k = 0; k < tile_cells; ++k)
+            if (!tile.child_exists[k]) children_[k] = this;
+    }
+    const TileLayout& layout = tile_layout();
+    const std::vector<glm::dvec3> normals = tile_normals(root, depth);
+    std::vector<glm::vec3> rounded(normals.size());
+    position.resize(normals.size());
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+        const GeoidUndulation N{tile.undulation.empty() ? 0.0 : static_cast<double>(tile.undulation[v])};
+        const glm::dvec3 p = placement.ecef(normals[v], static_cast<double>(tile.height[v]), N);
+        position[v] = grid_from_ecef(p);
+        rounded[v] = glm::vec3(p);
+    }
+    // Exaggeration e >= 1 stretches distances and deviations by at most e (the part that is curvature is not
+    // stretched), so e * radius and e * deviation keep the test nested. The stored radii hold for split vertices
+    // rounded to float at e = 1; at another e the roundings differ by up to 0.9 (1 + e) m a level, which the last term
+    // covers.
+    const double e = std::max(1.0, placement.exaggeration);
+    const double slack = placement.exaggeration == 1.0 ? 0.0 : 2.0 * (1.0 + e);
+    for (std::size_t i = 1; i < split.size(); ++i) {
+        const glm::vec3& m = rounded[layout.split_vertex[i]];
+        const int level = root.bisection_level() + static_cast<int>(std::bit_width(i)) - 1;
+        const double r = e * static_cast<double>(tile.radius[i]) + slack * (max_bisection_level + 1 - level);
+        split[i] = {m.x, m.y, m.z, static_cast<float>(e * static_cast<double>(tile.deviation[i])),
+                    std::nextafter(static_cast<float>(r), std::numeric_limits<float>::max())};
+        if (placement.exaggeration == 1.0) split[i].radius = tile.radius[i];
+    }
+}
+
+bool PlacedTile::has_child_below(unsigned i) const {
+    if (!children_) return false;
+    const int below = tile_levels + 1 - static_cast<int>(std::bit_width(i));
+    const unsigned first = (i << below) - tile_cells, end = ((i + 1) << below) - tile_cells;
+    for (unsigned k = first; k < end; ++k)
+        if (children_[k].load(std::memory_order_relaxed) != this) return true;
+    return false;
+}
+
+const PlacedTile* PlacedTile::child(const TileSource& source, unsigned k) const {
+    if (!children_) return nullptr;
+    const PlacedTile* found = children_[k].load(std::memory_order_acquire);
+    if (found == nullptr) {
+        found = source.tile(LocationCode(root.bits() << tile_levels | k));
+        children_[k].store(found ? found : this, std::memory_order_release);
+    }
+    return found == this ? nullptr : found;
+}
+
+}  // namespace planet

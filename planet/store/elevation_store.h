@@ -1,0 +1,86 @@
+#pragma once
+// The elevation store: tiles of heights and certified deviations in one SQLite file. README.md describes the format.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planet/elevation/elevation_field.h"
+#include "planet/geodesy/ellipsoid.h"
+#include "planet/mesh/tile.h"
+
+namespace planet {
+
+class SqliteFile;
+
+inline constexpr int store_format_version = 1;
+
+/// What a store says of itself.
+struct StoreMetadata {
+    int format_version = store_format_version;
+    Ellipsoid ellipsoid = wgs84;
+    VerticalDatum datum = VerticalDatum::egm96;
+    std::string undulation;  ///< what the datum's height above the ellipsoid was taken from; empty: 0 everywhere
+    double quantum_m = 0.25;
+    int finest_level = 0;  ///< bisection level of the finest cells
+    /// Largest Tile::resampling: no source sample is farther from the finest surface, metres.
+    double resampling_max_m = 0;
+    std::uint64_t tiles = 0;
+    std::uint64_t vertices = 0;  ///< of all tiles, those that tiles share counted in each
+    bool complete = false;       ///< the bake came to its end
+    std::vector<SourceInfo> sources;
+};
+
+/// What verify() found.
+struct StoreCheck {
+    std::uint64_t tiles = 0;
+    std::uint64_t vertices = 0;
+    std::uint64_t side_records = 0;  ///< compared with those of the tile beside
+    std::uint64_t problems = 0;
+    std::vector<std::string> first_problems;  ///< at most 20, one line each
+    bool ok() const { return problems == 0; }
+};
+
+/// Reading is safe from several threads. Moved-from stores may only be destroyed or assigned to.
+class ElevationStore {
+  public:
+    /// Opens a store for reading. A store whose writer was killed is rolled back to its last transaction first; any
+    /// other is not written to, and must not be written by others meanwhile.
+    /// Throws Error(bad_data): missing, empty, not a store, cut short, of a newer version, damaged.
+    static ElevationStore open(const std::filesystem::path& path);
+    /// The same; Error(bad_data) too if the store is of another planet.
+    static ElevationStore open(const std::filesystem::path& path, const Ellipsoid& expected);
+    /// Takes over a connection that a bake has filled.
+    explicit ElevationStore(SqliteFile&& file);
+
+    ElevationStore(ElevationStore&&) noexcept;
+    ElevationStore& operator=(ElevationStore&&) noexcept;
+    ~ElevationStore();
+
+    const StoreMetadata& metadata() const;
+    /// The path, or "store in memory".
+    const std::string& where() const;
+
+    /// The tile below a cell, or nullopt if the store has none there. A tile that is listed by the one above it (or is
+    /// a face) but cannot be read is damage: Error(bad_data) naming it. In a store that is not complete, a listed tile
+    /// that is missing has not been written yet: nullopt.
+    /// @param root bisection level a multiple of 12
+    std::optional<Tile> read(LocationCode root) const;
+
+    /// Every tile, ascending by code.
+    std::vector<LocationCode> tiles() const;
+
+    /// Reads everything: checksums, that listed tiles exist and no others, that deviations and radii are nested, that
+    /// tiles hold the same bits on the sides they share and at the corners they inherit, that inner deviations bound
+    /// the tile's own vertices.
+    StoreCheck verify() const;
+
+  private:
+    struct Open;
+    std::unique_ptr<Open> open_;
+};
+
+}  // namespace planet

@@ -1,0 +1,187 @@
+#include "planet/store/store_tables.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "planet/error.h"
+
+namespace planet {
+
+namespace {
+
+std::string shortest(double v) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), v).ptr;
+    return {digits.data(), end};
+}
+
+// FNV-1a, 64 bits: enough to find damage.
+std::string checksum_of(std::string_view text) {
+    std::uint64_t h = 0xcbf29ce484222325u;
+    for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    std::array<char, 17> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), h, 16).ptr;
+    return {digits.data(), end};
+}
+
+std::string_view text_of(VerticalDatum datum) {
+    return datum == VerticalDatum::egm96 ? "egm96" : "ellipsoid";
+}
+
+using Entries = std::map<std::string, std::string>;
+
+Entries entries_of(const StoreMetadata& m) {
+    return {{"ellipsoid", std::string(m.ellipsoid.name)},
+            {"ellipsoid_a_m", shortest(m.ellipsoid.a)},
+            {"ellipsoid_f", shortest(m.ellipsoid.f)},
+            {"vertical_datum", std::string(text_of(m.datum))},
+            {"undulation", m.undulation},
+            {"quantum_m", shortest(m.quantum_m)},
+            {"finest_level", std::to_string(m.finest_level)},
+            {"resampling_max_m", shortest(m.resampling_max_m)},
+            {"tiles", std::to_string(m.tiles)},
+            {"vertices", std::to_string(m.vertices)}};
+}
+
+std::string checksum_of(const Entries& entries, const std::vector<SourceInfo>& sources) {
+    std::string text;
+    for (const auto& [key, value] : entries) text.append(key).append("=").append(value).append("\n");
+    for (const SourceInfo& s : sources) {
+        for (const std::string_view part :
+             {std::string_view(s.name), std::string_view(s.checksum), std::string_view(s.crs), text_of(s.datum)})
+            text.append(part).append("\n");
+        text.append(shortest(s.spacing_m)).append("\n");
+    }
+    return checksum_of(text);
+}
+
+class EntryReader {
+  public:
+    EntryReader(const Entries& entries, const std::string& where) : entries_(entries), where_(where) {}
+
+    const std::string& text(const char* key) const {
+        const auto found = entries_.find(key);
+        if (found == entries_.end()) fail(key, "is missing");
+        return found->second;
+    }
+    template <class Number>
+    Number number(const char* key, Number least, Number most) const {
+        const std::string& t = text(key);
+        Number v{};
+        const auto [end, fault] = std::from_chars(t.data(), t.data() + t.size(), v);
+        if (fault != std::errc{} || end != t.data() + t.size() || !(v >= least && v <= most))
+            fail(key, "is \"" + t + "\"");
+        return v;
+    }
+    [[noreturn]] void fail(std::string_view key, std::string_view what) const {
+        throw Error(Fault::bad_data, where_, "the metadata is damaged: " + std::string(key) + " " + std::string(what));
+    }
+
+  private:
+    const Entries& entries_;
+    const std::string& where_;
+};
+
+VerticalDatum datum_from(const std::string& text, const EntryReader& read) {
+    if (text == "egm96") return VerticalDatum::egm96;
+    if (text == "ellipsoid") return VerticalDatum::ellipsoid;
+    read.fail("vertical_datum", "is \"" + text + "\"");
+}
+
+// Names are of static storage; an ellipsoid that is not one of those known keeps its constants.
+Ellipsoid ellipsoid_from(const EntryReader& read) {
+    const std::string& name = read.text("ellipsoid");
+    std::string_view kept = "ellipsoid";
+    for (const std::string_view known : {wgs84.name, moon.name, mars.name, sphere().name})
+        if (name == known) kept = known;
+    return ellipsoid(kept, read.number<double>("ellipsoid_a_m", 1, 1e9), read.number<double>("ellipsoid_f", 0, 0.9));
+}
+
+}  // namespace
+
+void create_tables(SqliteFile& file) {
+    const std::string pragmas =
+        "PRAGMA page_size = 16384; PRAGMA application_id = " + std::to_string(store_application_id) +
+        "; PRAGMA user_version = " + std::to_string(store_format_version) + ";";
+    file.run(pragmas.c_str());
+    file.run(
+        "CREATE TABLE metadata(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
+        "CREATE TABLE sources(rank INTEGER PRIMARY KEY, name TEXT, checksum TEXT, crs TEXT, datum TEXT, spacing_m "
+        "REAL);"
+        "CREATE TABLE tiles(code INTEGER PRIMARY KEY, data BLOB NOT NULL);");
+}
+
+void write_metadata(SqliteFile& file, const StoreMetadata& m) {
+    Entries entries = entries_of(m);
+    entries["checksum"] = checksum_of(entries, m.sources);
+    entries["complete"] = m.complete ? "1" : "0";
+    file.run("DELETE FROM metadata; DELETE FROM sources;");
+    SqliteStatement entry(file, "INSERT INTO metadata VALUES(?, ?)");
+    for (const auto& [key, value] : entries) {
+        entry.bind(1, key).bind(2, value).step();
+        entry.reset();
+    }
+    SqliteStatement source(file, "INSERT INTO sources VALUES(?, ?, ?, ?, ?, ?)");
+    std::int64_t rank = 0;
+    for (const SourceInfo& s : m.sources) {
+        source.bind(1, rank++).bind(2, s.name).bind(3, s.checksum).bind(4, s.crs);
+        source.bind(5, text_of(s.datum)).bind(6, s.spacing_m).step();
+        source.reset();
+    }
+}
+
+StoreMetadata read_metadata(SqliteFile& file) {
+    Entries entries;
+    SqliteStatement entry(file, "SELECT key, value FROM metadata");
+    while (entry.step()) entries[entry.text(0)] = entry.text(1);
+    const EntryReader read(entries, file.where());
+
+    StoreMetadata m;
+    SqliteStatement source(file, "SELECT name, checksum, crs, datum, spacing_m FROM sources ORDER BY rank");
+    while (source.step())
+        m.sources.push_back(
+            {source.text(0), source.text(1), source.text(2), datum_from(source.text(3), read), source.real(4)});
+    m.complete = read.text("complete") == "1";
+    const std::string checksum = read.text("checksum");
+    entries.erase("complete");
+    entries.erase("checksum");
+    if (checksum_of(entries, m.sources) != checksum) read.fail("its checksum", "does not match");
+
+    m.ellipsoid = ellipsoid_from(read);
+    m.datum = datum_from(read.text("vertical_datum"), read);
+    m.undulation = read.text("undulation");
+    m.quantum_m = read.number<double>("quantum_m", least_quantum_m, most_quantum_m);
+    m.finest_level = read.number<int>("finest_level", 1, max_bisection_level);
+    m.resampling_max_m = read.number<double>("resampling_max_m", 0, 1e9);
+    m.tiles = read.number<std::uint64_t>("tiles", 0, std::uint64_t{1} << 60);
+    m.vertices = read.number<std::uint64_t>("vertices", 0, std::uint64_t{1} << 60);
+    return m;
+}
+
+TileScale tile_scale(const StoreMetadata& m) {
+    return {{m.ellipsoid.a, m.ellipsoid.b, 1.0}, m.quantum_m, !m.undulation.empty()};
+}
+
+StoreWriter::StoreWriter(SqliteFile& file, StoreMetadata metadata) : file_(file), metadata_(std::move(metadata)) {
+    create_tables(file_);
+    metadata_.complete = false;
+    file_.run("BEGIN");
+    write_metadata(file_, metadata_);
+    file_.run("COMMIT; BEGIN");
+    insert_ = std::make_unique<SqliteStatement>(file_, "INSERT INTO tiles VALUES(?, ?)");
+}
+
+void StoreWriter::write(LocationCode root, std::span<const std::uint8_t> bytes) {
+    insert_->bind(1, static_cast<std::int64_t>(root.bits())).bind(2, bytes).step();
+    insert_->reset();
+    if (++written_ % tiles_in_a_transaction == 0) file_.run("COMMIT; BEGIN");
+}
+
+void StoreWriter::finish() {
+    insert_.reset();
+    file_.run("UPDATE metadata SET value = '1' WHERE key = 'complete'; COMMIT");
+}
+
+}  // namespace planet

@@ -1,0 +1,111 @@
+#include "planet/store/surface_cursor.h"
+
+#include <cassert>
+
+#include "planet/store/tile_sides.h"
+
+namespace planet {
+
+namespace {
+
+double triple(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+}
+
+}  // namespace
+
+SurfaceCursor::SurfaceCursor(const TileReader& tiles, const Placement& placement)
+    : tiles_(&tiles), placement_(placement) {
+    path_.reserve(max_bisection_level + 1);
+}
+
+bool SurfaceCursor::holds(const Step& step, const glm::dvec3& n) const {
+    const auto& [left, right, apex] = step.corners;
+    const double a = triple(n, left, right), b = triple(n, right, apex), c = triple(n, apex, left);
+    return step.counter_clockwise ? a >= 0 && b >= 0 && c >= 0 : a <= 0 && b <= 0 && c <= 0;
+}
+
+void SurfaceCursor::start(const glm::dvec3& n) {
+    const LocationCode face = cell_at(n, 0);
+    held_[0] = tiles_->tile(face);
+    assert(held_[0]);
+    path_.clear();
+    path_.push_back({face_corners(face.face()), held_[0].get(), 1, true});
+    plane_valid_ = false;
+}
+
+// At a cell below the last level of a tile: goes on in the tile that begins there, if there is one.
+bool SurfaceCursor::enter_tile_below(Step& step) {
+    if (step.tile->depth != tile_levels || !step.tile->child_exists[step.local - tile_cells]) return false;
+    const LocationCode root = cell_code(step.tile->root, step.local);
+    std::shared_ptr<const Tile> below = tiles_->tile(root);
+    if (!below || below->damaged || !(below->deviation[1] > 0)) return false;
+    step.tile = below.get();
+    step.local = 1;
+    held_[static_cast<std::size_t>(root.bisection_level() / tile_levels)] = std::move(below);
+    plane_valid_ = false;
+    return true;
+}
+
+void SurfaceCursor::seek(const glm::dvec3& n, int finest_level) {
+    const std::size_t most = static_cast<std::size_t>(finest_level) + 1;
+    if (path_.size() > most) {
+        path_.resize(most);
+        plane_valid_ = false;
+    }
+    while (!path_.empty() && !holds(path_.back(), n)) {
+        path_.pop_back();
+        plane_valid_ = false;
+    }
+    if (path_.empty()) start(n);
+    while (path_.size() < most) {
+        Step& step = path_.back();
+        if (step.local >> step.tile->depth && !enter_tile_below(step)) break;
+        if (!(step.tile->deviation[step.local] > 0)) break;
+        const glm::dvec3 m = split_vertex(step.corners);
+        // Which side of the plane through the planet's centre, m and the apex: left is on child 0's side.
+        const double side = triple(n, m, step.corners.apex);
+        const int child = (step.counter_clockwise ? side >= 0 : side <= 0) ? 0 : 1;
+        path_.push_back({child_corners(step.corners, m, child), step.tile,
+                         2 * step.local + static_cast<unsigned>(child), !step.counter_clockwise});
+        plane_valid_ = false;
+    }
+}
+
+LocationCode SurfaceCursor::cell() const {
+    return cell_code(path_.back().tile->root, path_.back().local);
+}
+
+float SurfaceCursor::deviation() const {
+    const Step& step = path_.back();
+    return step.local >> step.tile->depth ? 0.0f : step.tile->deviation[step.local];
+}
+
+void SurfaceCursor::set_plane() {
+    const Step& step = path_.back();
+    const Tile& tile = *step.tile;
+    const auto& vertex = tile_layout().corners[step.local];
+    has_undulation_ = !tile.undulation.empty();
+    const glm::dvec3* normal[3] = {&step.corners.left, &step.corners.right, &step.corners.apex};
+    glm::dvec3 at[3];
+    for (int k = 0; k < 3; ++k) {
+        const std::size_t v = vertex[static_cast<std::size_t>(k)];
+        undulation_[k] = has_undulation_ ? static_cast<double>(tile.undulation[v]) : 0.0;
+        at[k] = placement_.ecef(*normal[k], static_cast<double>(tile.height[v]), undulation_[k]);
+    }
+    corner_ = at[0];
+    plane_ = glm::cross(at[1] - at[0], at[2] - at[0]);
+    plane_valid_ = true;
+}
+
+double SurfaceCursor::height(const glm::dvec3& n) {
+    if (!plane_valid_) set_plane();
+    const glm::dvec3 foot = placement_.ecef(n, 0, 0);
+    const double h = glm::dot(corner_ - foot, plane_) / glm::dot(n, plane_);
+    if (!has_undulation_) return h;
+    const auto& [left, right, apex] = path_.back().corners;
+    const double l = triple(n, right, apex), r = triple(n, apex, left), a = triple(n, left, right);
+    return h - (l * undulation_[0] + r * undulation_[1] + a * undulation_[2]) / (l + r + a);
+}
+
+}  // namespace planet

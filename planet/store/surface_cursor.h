@@ -1,0 +1,69 @@
+#pragma once
+// The surface of a store at a direction: descent to the finest cell there, and the plane of that cell.
+//
+// A cursor remembers the path from the face down to where it was last. A direction near the last one starts from the
+// nearest cell of that path that holds it, so that coherent queries cost a few levels each.
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "planet/mesh/placed_tile.h"
+#include "planet/mesh/tile.h"
+#include "planet/octahedron/octahedron_map.h"
+
+namespace planet {
+
+/// Where tiles in memory come from.
+class TileReader {
+  public:
+    virtual ~TileReader() = default;
+    /// nullptr if there is none.
+    virtual std::shared_ptr<const Tile> tile(LocationCode root) const = 0;
+};
+
+/// One thread's. The reader must outlive it.
+class SurfaceCursor {
+  public:
+    SurfaceCursor(const TileReader& tiles, const Placement& placement);
+
+    /// Moves to the cell that holds a unit geodetic normal: the finest one that exists, but none of a bisection level
+    /// beyond `finest_level`. On a side, one of the cells that meet there.
+    void seek(const glm::dvec3& normal, int finest_level = max_bisection_level);
+
+    /// Where it is.
+    LocationCode cell() const;
+    /// The tile that holds the cell: for the last cells of a tile with children, the child tile where there is one.
+    const Tile& tile() const { return *path_.back().tile; }
+    /// The certified deviation of the cell from the finest surface, metres: 0 if it is of the finest surface.
+    float deviation() const;
+
+    /// Height above the datum, metres, of the plane of the cell along a normal (unit) in it: where the normal's line
+    /// meets the plane, less the undulation there, linear between the corners.
+    double height(const glm::dvec3& normal);
+
+  private:
+    struct Step {
+        Corners corners;
+        const Tile* tile;
+        unsigned local;
+        bool counter_clockwise;
+    };
+
+    bool holds(const Step& step, const glm::dvec3& n) const;
+    void start(const glm::dvec3& n);
+    bool enter_tile_below(Step& step);
+    void set_plane();
+
+    const TileReader* tiles_;
+    Placement placement_;
+    std::vector<Step> path_;                                                               // by bisection level
+    std::array<std::shared_ptr<const Tile>, max_bisection_level / tile_levels + 1> held_;  // by root level / 12
+
+    bool plane_valid_ = false;
+    glm::dvec3 corner_{0}, plane_{0};
+    glm::dvec3 undulation_{0};  // at left, right, apex
+    bool has_undulation_ = false;
+};
+
+}  // namespace planet

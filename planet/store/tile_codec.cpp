@@ -1,0 +1,380 @@
+#include "planet/store/tile_codec.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <memory>
+
+#include "planet/store/byte_stream.h"
+#include "planet/store/ladder.h"
+
+namespace planet {
+
+namespace {
+
+constexpr std::size_t most_payload_bytes = 1 << 16;
+constexpr int compression_level = 9;
+constexpr std::uint8_t flag_inner = 1, flag_undulation = 2, flag_whole = 4;
+
+// ---- planes: numbers below 2^8 or 2^16 as planes of bytes; what does not fit follows as varints ---------------------
+
+void write_plane8(ByteWriter& out, std::span<const std::uint64_t> values) {
+    for (const std::uint64_t v : values) out.u8(static_cast<std::uint8_t>(std::min<std::uint64_t>(v, 255)));
+    for (const std::uint64_t v : values)
+        if (v >= 255) out.varint(v - 255);
+}
+
+void write_plane16(ByteWriter& out, std::span<const std::uint64_t> values) {
+    const auto stored = [](std::uint64_t v) { return std::min<std::uint64_t>(v, 65535); };
+    for (const std::uint64_t v : values) out.u8(static_cast<std::uint8_t>(stored(v)));
+    for (const std::uint64_t v : values) out.u8(static_cast<std::uint8_t>(stored(v) >> 8));
+    for (const std::uint64_t v : values)
+        if (v >= 65535) out.varint(v - 65535);
+}
+
+void read_plane8(ByteReader& in, std::span<std::uint64_t> values) {
+    const auto plane = in.raw(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = plane[i];
+    for (std::uint64_t& v : values)
+        if (v == 255) v += in.varint();
+}
+
+void read_plane16(ByteReader& in, std::span<std::uint64_t> values) {
+    const auto low = in.raw(values.size()), high = in.raw(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = low[i] | std::uint64_t{high[i]} << 8;
+    for (std::uint64_t& v : values)
+        if (v == 65535) v += in.varint();
+}
+
+// ---- heights and undulations: the three corners, then what each vertex differs from the mean of its ends ------------
+
+std::int64_t mean_of_ends(std::span<const std::int64_t> q, std::size_t v) {
+    const auto [a, b] = tile_layout().ends[v];
+    return (q[a] + q[b]) >> 1;
+}
+
+std::vector<std::int64_t> quanta(std::span<const float> values, double quantum) {
+    std::vector<std::int64_t> q(values.size());
+    for (std::size_t v = 0; v < q.size(); ++v) q[v] = std::llround(static_cast<double>(values[v]) / quantum);
+    return q;
+}
+
+std::vector<std::uint64_t> residuals(std::span<const std::int64_t> q) {
+    std::vector<std::uint64_t> r;
+    for (std::size_t v = 3; v < q.size(); ++v) r.push_back(zigzag(q[v] - mean_of_ends(q, v)));
+    return r;
+}
+
+void write_corners(ByteWriter& out, std::span<const std::int64_t> q) {
+    for (std::size_t v = 0; v < 3; ++v) out.varint(zigzag(q[v]));
+}
+
+// Reads `count` values and scales them. Wide arithmetic and a range check: damage must not overflow.
+void read_lattice(ByteReader& in, bool wide, std::size_t count, double quantum, std::span<float> out) {
+    static thread_local std::vector<std::uint64_t> residual;
+    static thread_local std::vector<std::int64_t> q;
+    q.resize(count);
+    residual.resize(count - 3);
+    for (std::size_t v = 0; v < 3; ++v) q[v] = unzigzag(in.varint());
+    if (wide)
+        read_plane16(in, residual);
+    else
+        read_plane8(in, residual);
+    const auto in_range = [](std::int64_t v) { return v >= -largest_height_quanta && v <= largest_height_quanta; };
+    bool fits = in_range(q[0]) && in_range(q[1]) && in_range(q[2]);
+    for (std::size_t v = 3; v < count && fits; ++v) {
+        const std::int64_t r = unzigzag(residual[v - 3]);
+        q[v] = mean_of_ends(q, v) + std::clamp(r, -4 * largest_height_quanta, 4 * largest_height_quanta);
+        fits = in_range(q[v]);
+    }
+    if (!fits) throw MalformedBytes("a height is out of range");
+    for (std::size_t v = 0; v < count; ++v) out[v] = static_cast<float>(static_cast<double>(q[v]) * quantum);
+}
+
+float finite(float v) {
+    if (!std::isfinite(v)) throw MalformedBytes("a number is not finite");
+    return v;
+}
+
+void write_undulations(ByteWriter& out, const Tile& tile) {
+    const std::size_t own = own_undulations(tile.root, tile.depth);
+    if (own == 0) {
+        for (std::size_t v = 0; v < 3; ++v) out.f32(tile.undulation[v]);
+        return;
+    }
+    const auto q = quanta(std::span(tile.undulation).first(own), undulation_quantum_m);
+    write_corners(out, q);
+    write_plane8(out, residuals(q));
+}
+
+void read_undulations(ByteReader& in, Tile& tile) {
+    tile.undulation.resize(tile.height.size());
+    const std::size_t own = own_undulations(tile.root, tile.depth);
+    if (own == 0)
+        for (std::size_t v = 0; v < 3; ++v) tile.undulation[v] = finite(in.f32());
+    else
+        read_lattice(in, false, own, undulation_quantum_m, tile.undulation);
+    interpolate_undulations(tile.root, tile.depth, tile.undulation);
+}
+
+// ---- leaf tiles: only what the neighbours add to the records of side cells ------------------------------------------
+
+void write_bits(ByteWriter& out, std::span<const std::uint8_t> flags) {
+    for (std::size_t i = 0; i < flags.size(); i += 8) {
+        unsigned byte = 0;
+        for (std::size_t k = 0; k < 8 && i + k < flags.size(); ++k) byte |= (flags[i + k] ? 1u : 0u) << k;
+        out.u8(static_cast<std::uint8_t>(byte));
+    }
+}
+
+std::vector<std::uint8_t> read_bits(ByteReader& in, std::size_t count) {
+    const auto bytes = in.raw((count + 7) / 8);
+    std::vector<std::uint8_t> flags(count);
+    for (std::size_t i = 0; i < count; ++i) flags[i] = bytes[i / 8] >> (i % 8) & 1;
+    return flags;
+}
+
+void write_leaf(ByteWriter& out, const BakedTile& baked, bool whole) {
+    const auto sides = side_cells(baked.tile.depth);
+    std::vector<std::uint8_t> exists;
+    std::vector<std::uint64_t> deviation, radius;
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+        exists.push_back(baked.exists[sides[k].cell]);
+        if (!exists.back()) continue;
+        deviation.push_back(baked.gain[k].deviation);
+        radius.push_back(baked.gain[k].radius);
+    }
+    if (!whole) write_bits(out, exists);
+    write_plane8(out, deviation);
+    write_plane8(out, radius);
+}
+
+struct SideGains {
+    std::vector<std::uint64_t> deviation, radius;
+};
+
+// What the bake did, from the gains of the sides: own deviations, then saturation from the finest level up.
+void settle_leaf(Tile& tile, std::span<const std::uint8_t> exists, const SideGains& gains, const TileLattice& lattice) {
+    own_deviation(lattice, tile.deviation);
+    corner_radii(lattice, exists, false, {}, tile.radius);
+    const Saturation s{tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
+    const TileLayout& layout = tile_layout();
+    const auto sides = side_cells(tile.depth);
+    std::size_t k = sides.size(), g = gains.deviation.size();
+    for (unsigned first = 1u << (tile.depth - 1); first > 0; first >>= 1) {
+        for (unsigned i = first; i < 2 * first; ++i) s.raise(i);
+        for (unsigned i = first; i < 2 * first; ++i)
+            if (const unsigned beyond = layout.split_neighbor[i]; i < beyond) s.join(i, beyond);
+        for (; k > 0 && sides[k - 1].cell >= first; --k) {
+            const unsigned i = sides[k - 1].cell;
+            if (!exists[i]) continue;
+            --g;
+            const std::uint64_t d = deviation_code(s.deviation[i]) + gains.deviation[g];
+            const std::uint64_t r = radius_code(s.radius[i]) + gains.radius[g];
+            if (d >= deviation_codes || r >= 0x7f80) throw MalformedBytes("a record is out of range");
+            s.deviation[i] = deviation_from_code(static_cast<unsigned>(d));
+            s.radius[i] = radius_from_code(static_cast<unsigned>(r));
+        }
+    }
+    tile.deviation[0] = tile.radius[0] = 0;
+}
+
+void read_leaf(ByteReader& in, bool whole, const TileScale& scale, Tile& tile) {
+    static thread_local TileLattice lattice;
+    const std::size_t records = std::size_t{1} << tile.depth, sides = side_cells(tile.depth).size();
+    const std::vector<std::uint8_t> on_side = whole ? std::vector<std::uint8_t>(sides, 1) : read_bits(in, sides);
+    const auto side_count = static_cast<std::size_t>(std::count(on_side.begin(), on_side.end(), 1));
+    std::vector<std::uint8_t> exists(records);
+    existence_inside(tile.depth, on_side, exists);
+    SideGains gains{std::vector<std::uint64_t>(side_count), std::vector<std::uint64_t>(side_count)};
+    read_plane8(in, gains.deviation);
+    read_plane8(in, gains.radius);
+    own_height_range(tile, exists);
+    lattice.set_normals(corners(tile.root), tile.depth);
+    lattice.set_positions(scale.placement, tile.height, tile.undulation,
+                          whole ? std::span<const std::uint8_t>() : std::span<const std::uint8_t>(exists));
+    settle_leaf(tile, exists, gains, lattice);
+}
+
+// ---- inner tiles: all deviations; radii of the finest diamonds and of the sides -------------------------------------
+
+bool stores_radius(unsigned i) {
+    const unsigned beyond = tile_layout().split_neighbor[i];
+    return beyond == 0 || (i >= tile_cells / 2 && i < beyond);
+}
+
+void write_inner(ByteWriter& out, const BakedTile& baked) {
+    const Tile& tile = baked.tile;
+    out.f32(tile.min_height);
+    out.f32(tile.max_height);
+    std::vector<std::uint8_t> child(tile_cells);
+    for (std::size_t k = 0; k < child.size(); ++k) child[k] = tile.child_exists[k];
+    write_bits(out, child);
+    std::vector<std::uint64_t> deviation, radius;
+    for (unsigned i = 1; i < tile_cells; ++i) {
+        if (i > tile_layout().split_neighbor[i]) deviation.push_back(deviation_code(tile.deviation[i]));
+        if (stores_radius(i)) radius.push_back(radius_code(tile.radius[i]));
+    }
+    write_plane8(out, deviation);
+    write_plane16(out, radius);
+}
+
+void read_inner_records(ByteReader& in, Tile& tile) {
+    const TileLayout& layout = tile_layout();
+    std::vector<std::uint64_t> deviation, radius;
+    for (unsigned i = 1; i < tile_cells; ++i) {
+        if (i > layout.split_neighbor[i]) deviation.push_back(0);
+        if (stores_radius(i)) radius.push_back(0);
+    }
+    read_plane8(in, deviation);
+    read_plane16(in, radius);
+    const auto in_range = [](auto& values, std::uint64_t end) {
+        return std::all_of(values.begin(), values.end(), [end](std::uint64_t v) { return v < end; });
+    };
+    if (!in_range(deviation, deviation_codes) || !in_range(radius, 0x7f80))
+        throw MalformedBytes("a record is out of range");
+    std::fill(tile.radius.begin(), tile.radius.end(), 0.0f);
+    tile.deviation[0] = 0;
+    std::size_t d = 0, r = 0;
+    for (unsigned i = 1; i < tile_cells; ++i) {
+        const unsigned beyond = layout.split_neighbor[i];
+        if (i > beyond) {
+            tile.deviation[i] = deviation_from_code(static_cast<unsigned>(deviation[d++]));
+            if (beyond != 0) tile.deviation[beyond] = tile.deviation[i];
+        }
+        if (stores_radius(i)) {
+            tile.radius[i] = radius_from_code(static_cast<unsigned>(radius[r++]));
+            if (beyond != 0) tile.radius[beyond] = tile.radius[i];
+        }
+    }
+}
+
+void read_inner(ByteReader& in, const TileScale& scale, Tile& tile) {
+    static thread_local TileLattice lattice;
+    tile.min_height = finite(in.f32());
+    tile.max_height = finite(in.f32());
+    const auto child = read_bits(in, tile_cells);
+    for (std::size_t k = 0; k < child.size(); ++k) tile.child_exists[k] = child[k];
+    read_inner_records(in, tile);
+    std::vector<std::uint8_t> exists(tile_cells);
+    for (std::size_t i = 1; i < tile_cells; ++i) exists[i] = tile.deviation[i] > 0;
+    lattice.set_normals(corners(tile.root), tile.depth);
+    lattice.set_positions(scale.placement, tile.height, tile.undulation, {});
+    // The radii in between, as the bake had them. Deviations are saturated already, so raising leaves them alone.
+    std::vector<float> start(tile_cells);
+    corner_radii(lattice, exists, true, std::vector<std::uint8_t>(tile_cells / 2, 0), start);
+    const Saturation s{tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
+    const TileLayout& layout = tile_layout();
+    for (unsigned first = tile_cells / 4; first > 0; first >>= 1) {
+        for (unsigned i = first; i < 2 * first; ++i) {
+            if (layout.split_neighbor[i] == 0) continue;
+            tile.radius[i] = start[i];
+            s.raise(i);
+        }
+        for (unsigned i = first; i < 2 * first; ++i)
+            if (const unsigned beyond = layout.split_neighbor[i]; i < beyond) s.join(i, beyond);
+    }
+}
+
+// ---- the frame around it: zstd with its content checksum ------------------------------------------------------------
+
+struct FreeContext {
+    void operator()(ZSTD_CCtx* c) const { ZSTD_freeCCtx(c); }
+    void operator()(ZSTD_DCtx* c) const { ZSTD_freeDCtx(c); }
+};
+
+std::vector<std::uint8_t> compress(std::span<const std::uint8_t> payload) {
+    static thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
+    ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, compression_level);
+    ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
+    std::vector<std::uint8_t> frame(ZSTD_compressBound(payload.size()));
+    const std::size_t size = ZSTD_compress2(context.get(), frame.data(), frame.size(), payload.data(), payload.size());
+    assert(!ZSTD_isError(size));
+    frame.resize(size);
+    return frame;
+}
+
+std::span<const std::uint8_t> decompress(std::span<const std::uint8_t> frame) {
+    static thread_local const std::unique_ptr<ZSTD_DCtx, FreeContext> context(ZSTD_createDCtx());
+    static thread_local std::vector<std::uint8_t> payload(most_payload_bytes);
+    const std::size_t size =
+        ZSTD_decompressDCtx(context.get(), payload.data(), payload.size(), frame.data(), frame.size());
+    if (ZSTD_isError(size)) throw MalformedBytes(ZSTD_getErrorName(size));
+    return {payload.data(), size};
+}
+
+}  // namespace
+
+std::size_t own_undulations(LocationCode root, int depth) {
+    const int levels = undulation_level - root.bisection_level();
+    return levels <= 0 ? 0 : tile_layout().vertex_count[static_cast<std::size_t>(std::min(levels, depth))];
+}
+
+void interpolate_undulations(LocationCode root, int depth, std::span<float> undulation) {
+    const TileLayout& layout = tile_layout();
+    const std::size_t all = layout.vertex_count[static_cast<std::size_t>(depth)];
+    for (std::size_t v = std::max<std::size_t>(3, own_undulations(root, depth)); v < all; ++v)
+        undulation[v] = 0.5f * (undulation[layout.ends[v][0]] + undulation[layout.ends[v][1]]);
+}
+
+void own_height_range(Tile& tile, std::span<const std::uint8_t> exists) {
+    const TileLayout& layout = tile_layout();
+    const auto [least, most] = std::minmax_element(tile.height.begin(), tile.height.begin() + 3);
+    tile.min_height = *least;
+    tile.max_height = *most;
+    for (std::size_t i = 1; i < exists.size(); ++i) {
+        if (!exists[i]) continue;
+        const float h = tile.height[layout.split_vertex[i]];
+        tile.min_height = std::min(tile.min_height, h);
+        tile.max_height = std::max(tile.max_height, h);
+    }
+}
+
+std::vector<std::uint8_t> encode_tile(const BakedTile& baked, const TileScale& scale) {
+    const Tile& tile = baked.tile;
+    const bool whole = std::all_of(baked.exists.begin() + 1, baked.exists.end(), [](std::uint8_t e) { return e != 0; });
+    ByteWriter out;
+    out.varint(tile.root.bits());
+    out.u8(static_cast<std::uint8_t>(tile.depth));
+    out.u8(static_cast<std::uint8_t>((baked.inner() ? flag_inner : 0) | (scale.has_undulation ? flag_undulation : 0) |
+                                     (whole ? flag_whole : 0)));
+    out.f32(tile.resampling);
+    const auto q = quanta(tile.height, scale.quantum_m);
+    write_corners(out, q);
+    write_plane16(out, residuals(q));
+    if (scale.has_undulation) write_undulations(out, tile);
+    if (baked.inner())
+        write_inner(out, baked);
+    else
+        write_leaf(out, baked, whole);
+    return compress(out.bytes());
+}
+
+Tile decode_tile(LocationCode root, std::span<const std::uint8_t> bytes, const TileScale& scale) {
+    ByteReader in(decompress(bytes));
+    Tile tile;
+    if (in.varint() != root.bits()) throw MalformedBytes("it is another tile");
+    tile.root = root;
+    tile.depth = in.u8();
+    const std::uint8_t flags = in.u8();
+    const bool inner = flags & flag_inner;
+    if (tile.depth < 1 || tile.depth > tile_levels || (inner && tile.depth != tile_levels) ||
+        root.bisection_level() % tile_levels != 0 || root.bisection_level() + tile.depth > max_bisection_level)
+        throw MalformedBytes("its depth is not possible");
+    tile.resampling = finite(in.f32());
+    tile.height.resize(tile_layout().vertex_count[static_cast<std::size_t>(tile.depth)]);
+    tile.deviation.resize(std::size_t{1} << tile.depth);
+    tile.radius.resize(std::size_t{1} << tile.depth);
+    read_lattice(in, true, tile.height.size(), scale.quantum_m, tile.height);
+    if (flags & flag_undulation) read_undulations(in, tile);
+    if (inner)
+        read_inner(in, scale, tile);
+    else
+        read_leaf(in, flags & flag_whole, scale, tile);
+    if (!in.at_end()) throw MalformedBytes("bytes follow its end");
+    return tile;
+}
+
+}  // namespace planet

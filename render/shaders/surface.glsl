@@ -1,0 +1,155 @@
+// Radiance of the planet's surface: land, sea, snow, night. Also C++, see atmosphere.glsl, which comes first.
+//
+// Define FROM_AFAR where every pixel is wider than 0.6 texels of the imagery (sky_detail.w): the picture is the same,
+// and software renderers, which run both sides of every branch, save a third of the time.
+
+#ifndef __cplusplus
+layout(binding = 3) uniform sampler3D noise_table;
+#endif
+
+struct SurfaceInput {
+    vec3 view;            ///< ecef vector from the eye to the point, m
+    vec3 normal;          ///< geodetic normal, unit
+    vec3 terrain_normal;  ///< normal of the ground, unit
+    vec3 imagery;         ///< linear colour 0..1 of the day imagery
+    vec3 night;           ///< linear colour 0..1 of the night lights
+    float water;          ///< 0..1: part of the imagery's texel that is water
+    float height;         ///< orthometric, m
+    float footprint;      ///< side of the pixel on the ground, m
+};
+
+float luminance(vec3 c) {
+    return dot(c, vec3(0.2126f, 0.7152f, 0.0722f));
+}
+
+/// How far the imagery's own texels are magnified: 0 where they are as fine as pixels, 1 where one covers thousands.
+float close_up(float footprint) {
+    return 1.0f - smoothstep(log2(sky_detail.w * 0.02f), log2(sky_detail.w * 0.6f), log2(max(footprint, 1.0e-3f)));
+}
+
+/// Noise at the planet-fixed point beside the eye, with the finest features at about two pixels whatever the distance:
+/// two octave bands, cross-faded by the logarithm of the footprint. rgb: gradient -1..1, a: value -1..1.
+vec4 detail_noise(vec3 view, float footprint) {
+    float level = log2(clamp(footprint, 0.002f, 1024.0f)) + 1.0f;
+    float scale = exp2(-floor(level)) / 64.0f;
+    vec3 p = (vec3(sky_detail) + view) * scale;
+    return mix(texture(noise_table, p), texture(noise_table, p * 0.5f), fract(level)) * 2.0f - vec4(1.0f);
+}
+
+/// Noise with features of `size` metres and a few octaves below, as far as the footprint allows.
+float patch_noise(vec3 view, float size) {
+    return texture(noise_table, (vec3(sky_detail) + view) / (4.0f * size)).w * 2.0f - 1.0f;
+}
+
+/// Heights in metres at which forest ends and snow stays, by |sine of the latitude|: straight lines through the
+/// equator and subtropics (4,100 m), Colorado (3,600), the Alps (2,300) and 65 degrees (300).
+float treeline_at(float sin_latitude) {
+    return clamp(3600.0f - (sin_latitude - 0.609f) * 11200.0f, -400.0f, 4100.0f);
+}
+
+/// What one stands on where imagery has no more to say: colour from height, slope, latitude and the imagery's hue.
+/// @param steep cosine of the slope   @param large, small noise -1..1
+vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
+    float lum = max(luminance(s.imagery), 0.004f);
+    // Forest is dark in any imagery, and drought is yellow and bright.
+    float dry = smoothstep(0.75f, 1.3f, s.imagery.r / max(s.imagery.g, 0.004f)) * smoothstep(0.025f, 0.085f, lum);
+    float treeline = treeline_at(abs(s.normal.z)) + 220.0f * large;
+    float h = s.height + 60.0f * small;
+
+    // Soil and grass keep the imagery's hue, at a brightness that ground has.
+    vec3 hue = s.imagery / lum;
+    vec3 grass = mix(hue, vec3(1.05f, 1.06f, 0.55f), 0.45f) * mix(0.075f, 0.15f, dry) * (1.0f + 0.3f * large);
+    vec3 trees = mix(vec3(0.020f, 0.032f, 0.014f), hue * 0.035f, 0.35f) * (1.0f + 0.55f * small);
+    vec3 scree = mix(vec3(0.235f, 0.215f, 0.195f), hue * 0.21f, 0.35f);
+    vec3 rock = mix(vec3(0.135f, 0.122f, 0.112f), hue * 0.12f, 0.35f);
+    vec3 snow = vec3(0.78f, 0.82f, 0.88f);
+
+    float below = 1.0f - smoothstep(treeline - 170.0f, treeline + 110.0f, h);
+    float wet = max(1.0f - dry, smoothstep(treeline - 1250.0f, treeline - 700.0f, h));
+    float stand = smoothstep(-0.35f, 0.25f, large * 0.7f + small * 0.6f + 0.9f * wet - 0.45f);
+    vec3 cover = mix(grass * (1.0f + 0.25f * small), trees, below * wet * stand * smoothstep(0.55f, 0.75f, steep));
+    float bare = smoothstep(treeline + 150.0f, treeline + 700.0f, h + 250.0f * small);
+    bare = max(bare, 1.0f - smoothstep(0.84f, 0.93f, steep + 0.05f * small));
+    float cliff = 1.0f - smoothstep(0.70f, 0.86f, steep + 0.08f * small);
+    cover = mix(cover, mix(scree, rock, cliff) * (1.0f + 0.35f * small), bare);
+
+    float snowline = treeline + mix(800.0f, 1100.0f, dry);
+    float lies = smoothstep(0.66f, 0.84f, steep + 0.08f * small);
+    float white = smoothstep(snowline - 150.0f, snowline + 350.0f, h + 320.0f * small) * lies;
+    // Ice in the imagery (bright and not yellow) is believed anywhere it can lie.
+    float ice = smoothstep(0.42f, 0.62f, lum) * smoothstep(0.80f, 0.92f, s.imagery.b / max(s.imagery.r, 0.01f));
+    return mix(cover, snow * (1.0f + 0.06f * small), max(white, ice * lies));
+}
+
+/// Reflectance of water towards the eye for a mirror facet: Schlick, index 1.34.
+float fresnel_water(float cosine) {
+    float c = 1.0f - clamp(cosine, 0.0f, 1.0f);
+    float c2 = c * c;
+    return 0.0211f + 0.9789f * c2 * c2 * c;
+}
+
+/// The sea: light from below its surface, the sun's glint off slopes spread as Cox and Munk (1954) measured against the
+/// wind, and the sky in it. @param to_eye unit, ecef
+vec3 sea_radiance(SurfaceInput s, Light light, vec3 to_eye, vec3 color) {
+    vec3 sun = vec3(sky_sun);
+    float cos_view = dot(s.normal, to_eye);
+    float cos_sun = dot(s.normal, sun);
+    float slope2 = 0.003f + 0.00512f * sky_sunlight.w;
+    vec3 between = sun + to_eye;
+    vec3 facet = between / max(sqrt(dot(between, between)), 1.0e-4f);
+    float c = max(dot(s.normal, facet), 0.05f);
+    float c2 = c * c;
+    float spread = exp(-(1.0f - c2) / (c2 * slope2)) / (3.14159265f * slope2 * c2 * c2);
+    // Grazing views see waves that face them: the mean visible slope keeps both cosines off zero.
+    float rough = sqrt(slope2) * 0.5f;
+    float glint = fresnel_water(dot(facet, to_eye)) * spread / (4.0f * max(cos_view, rough) + 4.0f * rough);
+    glint = min(glint, 40.0f) * smoothstep(-0.02f, 0.06f, cos_sun);
+
+    float mirror = fresnel_water(sqrt(max(cos_view, 0.0f) * max(cos_view, 0.0f) + rough * rough * 4.0f));
+    vec3 sky = light.sky * (0.3183099f * mix(1.0f, 1.7f, 1.0f - clamp(cos_view * 2.0f, 0.0f, 1.0f)));
+    vec3 below = color * 0.3183099f * (light.sun * max(cos_sun, 0.0f) + light.sky) * (1.0f - mirror);
+    return below + sky * mirror + light.sun * glint * 0.3183099f * 3.14159265f;
+}
+
+/// Radiance that leaves the surface towards the eye; the air before it is aerial()'s.
+vec3 surface_radiance(SurfaceInput s) {
+    vec3 to_eye = -s.view / max(sqrt(dot(s.view, s.view)), 1.0e-3f);
+    vec3 sun = vec3(sky_sun);
+    float sun_cosine = dot(s.normal, sun);
+    Light light = light_at(s.height, sun_cosine);
+
+    vec3 albedo = s.imagery;
+    vec3 ground = s.terrain_normal;
+    float water = s.water;
+    float near = 0.0f;
+#ifndef FROM_AFAR
+    near = close_up(s.footprint);
+    {
+        vec4 fine = detail_noise(s.view, s.footprint);
+        float large = patch_noise(s.view, 2800.0f) + 0.5f * patch_noise(s.view, 230.0f);
+        float small = 0.6f * fine.w + 0.6f * patch_noise(s.view, 230.0f);
+        // Bumps stand for what is finer than any elevation data: none from afar, few on the plains.
+        vec3 bump = vec3(fine) - dot(vec3(fine), ground) * ground;
+        float rough = (1.0f - smoothstep(15.0f, 150.0f, s.footprint)) * min(0.25f + 2.5f * (1.0f - dot(ground, s.normal)), 1.0f);
+        vec3 cover = ground_cover(s, dot(ground, s.normal), large, small);
+        ground = normalize(ground - bump * (0.35f * near * rough));
+        albedo = mix(albedo, cover, near);
+        float shore = smoothstep(0.35f, 0.65f, s.water + (s.height < 0.5f ? 0.3f : -0.15f));
+        water = mix(water, shore, near);
+    }
+#endif
+
+    float facing = max(dot(ground, sun), 0.0f);
+    // Sky light falls on a slope in proportion to the sky it sees; the ground around gives the rest.
+    float open = 0.5f + 0.5f * dot(ground, s.normal);
+    vec3 level = light.sun * max(sun_cosine, 0.0f) + light.sky;
+    vec3 irradiance = light.sun * facing + light.sky * open + level * (0.2f * (1.0f - open));
+    vec3 land = albedo * 0.3183099f * irradiance;
+    vec3 sea = sea_radiance(s, light, to_eye, mix(s.imagery, vec3(0.008f, 0.026f, 0.046f), 0.5f * near));
+    vec3 day = mix(land, sea, water);
+
+    float dark = 1.0f - smoothstep(-0.14f, 0.03f, sun_cosine);
+    vec3 cities = s.night * (sky_exposure.y * dark);
+    vec3 ambient = mix(albedo, vec3(0.02f, 0.03f, 0.05f), water) * vec3(0.75f, 0.9f, 1.2f) * sky_exposure.z;
+    return day + cities + ambient;
+}

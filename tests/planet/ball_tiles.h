@@ -1,0 +1,67 @@
+#pragma once
+// A planet without data for tests and benchmarks: a height function on an ellipsoid, with per-level bounds that are
+// saturated by construction, to any depth, made on demand.
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+
+#include "planet/mesh/placed_tile.h"
+#include "planet/octahedron/cell_metrics.h"
+
+namespace planet::testing {
+
+class BallTiles final : public TileSource {
+  public:
+    using Height = std::function<double(const glm::dvec3&)>;
+
+    /// @param finest_level cells of this level are never split @param roughness deviation of a cell per metre of its
+    /// side
+    explicit BallTiles(int finest_level, double roughness = 0, Height height = {}, double exaggeration = 1)
+        : finest_(finest_level), height_(std::move(height)) {
+        placement_.exaggeration = exaggeration;
+        double radius = 0;
+        for (int level = finest_level; level >= 0; --level) {
+            const double side = cell_metrics(level).side_max * placement_.ellipsoid.a;
+            radius +=
+                side * 1.01 + 2 * 9000.0 * std::min(1.0, side / 1e5);  // |m - m_child| is below a side, plus relief
+            radius_[level] = static_cast<float>(radius);
+            deviation_[level] = static_cast<float>(side * side / (8 * placement_.ellipsoid.a) * 1.1 + roughness * side);
+        }
+    }
+
+    const PlacedTile* tile(LocationCode root) const override {
+        auto& slot = tiles_[root.bits()];
+        if (!slot) slot = make(root);
+        return slot.get();
+    }
+
+    std::size_t tile_count() const { return tiles_.size(); }
+
+  private:
+    std::unique_ptr<PlacedTile> make(LocationCode root) const {
+        Tile t;
+        t.root = root;
+        t.depth = std::min(tile_levels, finest_ - root.bisection_level());
+        if (finest_ > root.bisection_level() + tile_levels) t.child_exists.set();
+        const auto normals = tile_normals(root, t.depth);
+        for (const auto& n : normals) t.height.push_back(height_ ? static_cast<float>(height_(n)) : 0.0f);
+        t.deviation.resize(std::size_t{1} << t.depth);
+        t.radius.resize(std::size_t{1} << t.depth);
+        for (std::size_t i = 1; i < t.deviation.size(); ++i) {
+            const int level = root.bisection_level() + static_cast<int>(std::bit_width(i)) - 1;
+            t.deviation[i] = deviation_.at(level);
+            t.radius[i] = radius_.at(level);
+        }
+        return std::make_unique<PlacedTile>(t, placement_);
+    }
+
+    int finest_;
+    Height height_;
+    Placement placement_;
+    std::map<int, float> radius_, deviation_;
+    mutable std::map<std::uint64_t, std::unique_ptr<PlacedTile>> tiles_;
+};
+
+}  // namespace planet::testing
