@@ -56,6 +56,10 @@ class ElevationField {
 
     virtual std::vector<SourceInfo> sources() const = 0;
 
+    /// Appends directions just inside the border of what the field covers, voids included, about two a sample: where a
+    /// coarser field must be led up to this one. Fields that cover everything append nothing.
+    virtual void border(std::vector<glm::dvec3>& normals) const { (void)normals; }
+
     float height(const glm::dvec3& normal) const {
         float h = 0;
         heights({&normal, 1}, {&h, 1});

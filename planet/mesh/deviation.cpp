@@ -193,13 +193,13 @@ void TileLattice::set_normals(const Corners& root, int depth) {
 }
 
 void TileLattice::set_positions(const Placement& placement, std::span<const float> height,
-                                std::span<const float> undulation, std::span<const std::uint8_t> exists) {
+                                std::span<const GeoidUndulation> undulation, std::span<const std::uint8_t> exists) {
     assert(height.size() == size_);
     double *x = p_[0].data(), *y = p_[1].data(), *z = p_[2].data();
     rounded_.resize(size_);
     for (std::size_t v = 0; v < size_; ++v) {
-        const double N = undulation.empty() ? 0.0 : static_cast<double>(undulation[v]);
-        const glm::dvec3 p = placement.ecef(normal(v), static_cast<double>(height[v]), {N});
+        const GeoidUndulation N = undulation.empty() ? GeoidUndulation{} : undulation[v];
+        const glm::dvec3 p = placement.ecef(normal(v), static_cast<double>(height[v]), N);
         x[v] = p.x;
         y[v] = p.y;
         z[v] = p.z;

@@ -36,8 +36,8 @@ class TileLattice {
     /// Sets the positions. @param height above the datum, @param undulation of the datum above the ellipsoid or empty:
     /// by vertex index, metres. @param exists by local index, 1 where the cell's split vertex exists; empty: all do.
     /// A vertex that does not exist gets NaN coordinates, and no deviation heeds it.
-    void set_positions(const Placement& placement, std::span<const float> height, std::span<const float> undulation,
-                       std::span<const std::uint8_t> exists);
+    void set_positions(const Placement& placement, std::span<const float> height,
+                       std::span<const GeoidUndulation> undulation, std::span<const std::uint8_t> exists);
 
     int depth() const { return depth_; }
     std::size_t size() const { return size_; }

@@ -34,7 +34,7 @@ PlacedTile::PlacedTile(const Tile& tile, const Placement& placement)
     std::vector<glm::vec3> rounded(normals.size());
     position.resize(normals.size());
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        const GeoidUndulation N{tile.undulation.empty() ? 0.0 : static_cast<double>(tile.undulation[v])};
+        const GeoidUndulation N = tile.undulation.empty() ? GeoidUndulation{} : tile.undulation[v];
         const glm::dvec3 p = placement.ecef(normals[v], static_cast<double>(tile.height[v]), N);
         position[v] = grid_from_ecef(p);
         rounded[v] = glm::vec3(p);

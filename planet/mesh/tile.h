@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "planet/frames.h"
 #include "planet/mesh/tile_layout.h"
 #include "planet/octahedron/location_code.h"
 
@@ -21,7 +22,7 @@ struct Tile {
     /// By vertex index, vertex_count[depth] of them, metres: the height above the store's datum (H for egm96).
     std::vector<float> height;
     /// By vertex index, metres: the datum above the ellipsoid (N for egm96), so that h = height + undulation. Empty: 0.
-    std::vector<float> undulation;
+    std::vector<GeoidUndulation> undulation;
     /// By local index, 2^depth of them (0 unused): the largest distance in metres, along the geodetic normal, between
     /// the plane of either cell of the diamond and any finest vertex below; saturated.
     std::vector<float> deviation;

@@ -46,7 +46,7 @@ double quantum_for(int finest_level, double mean_radius_m) {
 class Bake {
   public:
     Bake(const ElevationField& field, const BakeOptions& options)
-        : field_(field), options_(options), placement_{options.ellipsoid.a, options.ellipsoid.b, 1.0} {
+        : field_(field), options_(options), placement_{options.ellipsoid, 1.0} {
         check(options);
         has_undulation_ = options.undulation && field.datum() != VerticalDatum::ellipsoid;
     }
@@ -152,7 +152,7 @@ class Bake {
             if (!(std::abs(N) < 1e4))
                 throw Error(Fault::bad_data, "bake",
                             "the geoid's height is " + std::to_string(undulations_[v].m) + " m", "-10000 to 10000 m");
-            tile.undulation[v] = static_cast<float>(N);
+            tile.undulation[v].m = N;
         }
         interpolate_undulations(tile.root, tile.depth, tile.undulation);
     }
@@ -203,7 +203,7 @@ class Bake {
     CellPlane plane_of(const Tile& tile, unsigned local, const Corners& c) const {
         const auto& vertex = tile_layout().corners[local];
         const auto at = [&](std::size_t k, const glm::dvec3& n) {
-            const double N = has_undulation_ ? static_cast<double>(tile.undulation[vertex[k]]) : 0.0;
+            const GeoidUndulation N = has_undulation_ ? tile.undulation[vertex[k]] : GeoidUndulation{};
             return placement_.ecef(n, static_cast<double>(tile.height[vertex[k]]), N);
         };
         return {at(0, c.left), at(1, c.right), at(2, c.apex)};

@@ -126,7 +126,7 @@ std::size_t planned_bytes(const PlannedTile& tile) {
     // As BakedTile holds them: by vertex height, undulation, rounded position; by cell deviation, radius, existence.
     const std::size_t vertices = tile_layout().vertex_count[static_cast<std::size_t>(tile.depth)];
     const std::size_t records = std::size_t{1} << tile.depth;
-    return 1536 + vertices * (4 + 4 + 12) + records * (4 + 4 + 1) + (tile.has_children ? 4 * tile_cells : 0);
+    return 1536 + vertices * (4 + 8 + 12) + records * (4 + 4 + 1) + (tile.has_children ? 4 * tile_cells : 0);
 }
 
 std::vector<PlannedTile> coverage(const ElevationField& field, const CoverageLimits& limits) {

@@ -97,7 +97,7 @@ class Checker {
     }
 
     glm::vec3 split_position(const Tile& tile) const {
-        const double N = tile.undulation.empty() ? 0.0 : static_cast<double>(tile.undulation[3]);
+        const GeoidUndulation N = tile.undulation.empty() ? GeoidUndulation{} : tile.undulation[3];
         return glm::vec3(
             scale_.placement.ecef(split_vertex(corners(tile.root)), static_cast<double>(tile.height[3]), N));
     }
@@ -130,7 +130,7 @@ class Checker {
             const std::size_t v = layout.split_vertex[s.cell], w = layout.split_vertex[j];
             if (deviation != other->deviation[j] || tile.radius[s.cell] != other->radius[j] ||
                 tile.height[v] != other->height[w] ||
-                (!tile.undulation.empty() && tile.undulation[v] != other->undulation[w]))
+                (!tile.undulation.empty() && tile.undulation[v].m != other->undulation[w].m))
                 problem(tile.root,
                         "record " + std::to_string(s.cell) + " differs from that of tile " + to_string(other->root));
         }
@@ -146,7 +146,7 @@ class Checker {
         const auto& corner = tile_layout().corners[tile_cells | position];
         for (std::size_t v = 0; v < 3; ++v)
             if (tile.height[v] != above->height[corner[v]] ||
-                (!tile.undulation.empty() && tile.undulation[v] != above->undulation[corner[v]]))
+                (!tile.undulation.empty() && tile.undulation[v].m != above->undulation[corner[v]].m))
                 problem(root, "corner " + std::to_string(v) + " differs from the tile above it");
     }
 

@@ -161,7 +161,7 @@ StoreMetadata read_metadata(SqliteFile& file) {
 }
 
 TileScale tile_scale(const StoreMetadata& m) {
-    return {{m.ellipsoid.a, m.ellipsoid.b, 1.0}, m.quantum_m, !m.undulation.empty()};
+    return {{m.ellipsoid, 1.0}, m.quantum_m, !m.undulation.empty()};
 }
 
 StoreWriter::StoreWriter(SqliteFile& file, StoreMetadata metadata) : file_(file), metadata_(std::move(metadata)) {

@@ -90,8 +90,8 @@ void SurfaceCursor::set_plane() {
     glm::dvec3 at[3];
     for (int k = 0; k < 3; ++k) {
         const std::size_t v = vertex[static_cast<std::size_t>(k)];
-        undulation_[k] = has_undulation_ ? static_cast<double>(tile.undulation[v]) : 0.0;
-        at[k] = placement_.ecef(*normal[k], static_cast<double>(tile.height[v]), undulation_[k]);
+        undulation_[k] = has_undulation_ ? tile.undulation[v].m : 0.0;
+        at[k] = placement_.ecef(*normal[k], static_cast<double>(tile.height[v]), {undulation_[k]});
     }
     corner_ = at[0];
     plane_ = glm::cross(at[1] - at[0], at[2] - at[0]);
@@ -100,7 +100,7 @@ void SurfaceCursor::set_plane() {
 
 double SurfaceCursor::height(const glm::dvec3& n) {
     if (!plane_valid_) set_plane();
-    const glm::dvec3 foot = placement_.ecef(n, 0, 0);
+    const glm::dvec3 foot = placement_.ecef(n, 0, {});
     const double h = glm::dot(corner_ - foot, plane_) / glm::dot(n, plane_);
     if (!has_undulation_) return h;
     const auto& [left, right, apex] = path_.back().corners;

@@ -8,8 +8,8 @@
 namespace planet {
 
 std::size_t bytes_of(const Tile& tile) {
-    return sizeof(Tile) + sizeof(float) * (tile.height.capacity() + tile.undulation.capacity() +
-                                           tile.deviation.capacity() + tile.radius.capacity());
+    return sizeof(Tile) + sizeof(GeoidUndulation) * tile.undulation.capacity() +
+           sizeof(float) * (tile.height.capacity() + tile.deviation.capacity() + tile.radius.capacity());
 }
 
 TileCache::TileCache(const ElevationStore& store, std::size_t memory_bytes) : store_(&store), limit_(memory_bytes) {}
@@ -62,13 +62,13 @@ std::shared_ptr<const Tile> TileCache::stand_in(LocationCode root) const {
     if (root.bisection_level() > 0) {
         if (const auto parent = tile(root.ancestor(root.bisection_level() - tile_levels)); parent && !parent->damaged) {
             const auto& corner = tile_layout().corners[tile_cells | (root.bits() & (tile_cells - 1))];
-            if (!parent->undulation.empty()) t.undulation.assign(4, 0.0f);
+            if (!parent->undulation.empty()) t.undulation.resize(4);
             for (std::size_t v = 0; v < 3; ++v) {
                 t.height[v] = parent->height[corner[v]];
                 if (!t.undulation.empty()) t.undulation[v] = parent->undulation[corner[v]];
             }
             t.height[3] = 0.5f * (t.height[0] + t.height[1]);
-            if (!t.undulation.empty()) t.undulation[3] = 0.5f * (t.undulation[0] + t.undulation[1]);
+            if (!t.undulation.empty()) t.undulation[3].m = 0.5 * (t.undulation[0].m + t.undulation[1].m);
         }
     }
     t.min_height = *std::min_element(t.height.begin(), t.height.end());

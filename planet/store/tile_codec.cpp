@@ -55,10 +55,8 @@ std::int64_t mean_of_ends(std::span<const std::int64_t> q, std::size_t v) {
     return (q[a] + q[b]) >> 1;
 }
 
-std::vector<std::int64_t> quanta(std::span<const float> values, double quantum) {
-    std::vector<std::int64_t> q(values.size());
-    for (std::size_t v = 0; v < q.size(); ++v) q[v] = std::llround(static_cast<double>(values[v]) / quantum);
-    return q;
+std::int64_t in_quanta(double value, double quantum) {
+    return std::llround(value / quantum);
 }
 
 std::vector<std::uint64_t> residuals(std::span<const std::int64_t> q) {
@@ -71,8 +69,8 @@ void write_corners(ByteWriter& out, std::span<const std::int64_t> q) {
     for (std::size_t v = 0; v < 3; ++v) out.varint(zigzag(q[v]));
 }
 
-// Reads `count` values and scales them. Wide arithmetic and a range check: damage must not overflow.
-void read_lattice(ByteReader& in, bool wide, std::size_t count, double quantum, std::span<float> out) {
+// Reads `count` values. Wide arithmetic and a range check: damage must not overflow.
+std::span<const std::int64_t> read_lattice(ByteReader& in, bool wide, std::size_t count) {
     static thread_local std::vector<std::uint64_t> residual;
     static thread_local std::vector<std::int64_t> q;
     q.resize(count);
@@ -90,7 +88,7 @@ void read_lattice(ByteReader& in, bool wide, std::size_t count, double quantum, 
         fits = in_range(q[v]);
     }
     if (!fits) throw MalformedBytes("a height is out of range");
-    for (std::size_t v = 0; v < count; ++v) out[v] = static_cast<float>(static_cast<double>(q[v]) * quantum);
+    return q;
 }
 
 float finite(float v) {
@@ -101,10 +99,11 @@ float finite(float v) {
 void write_undulations(ByteWriter& out, const Tile& tile) {
     const std::size_t own = own_undulations(tile.root, tile.depth);
     if (own == 0) {
-        for (std::size_t v = 0; v < 3; ++v) out.f32(tile.undulation[v]);
+        for (std::size_t v = 0; v < 3; ++v) out.f32(static_cast<float>(tile.undulation[v].m));
         return;
     }
-    const auto q = quanta(std::span(tile.undulation).first(own), undulation_quantum_m);
+    std::vector<std::int64_t> q;
+    for (std::size_t v = 0; v < own; ++v) q.push_back(in_quanta(tile.undulation[v].m, undulation_quantum_m));
     write_corners(out, q);
     write_plane8(out, residuals(q));
 }
@@ -112,10 +111,12 @@ void write_undulations(ByteWriter& out, const Tile& tile) {
 void read_undulations(ByteReader& in, Tile& tile) {
     tile.undulation.resize(tile.height.size());
     const std::size_t own = own_undulations(tile.root, tile.depth);
-    if (own == 0)
-        for (std::size_t v = 0; v < 3; ++v) tile.undulation[v] = finite(in.f32());
-    else
-        read_lattice(in, false, own, undulation_quantum_m, tile.undulation);
+    if (own == 0) {
+        for (std::size_t v = 0; v < 3; ++v) tile.undulation[v].m = static_cast<double>(finite(in.f32()));
+    } else {
+        const auto q = read_lattice(in, false, own);
+        for (std::size_t v = 0; v < own; ++v) tile.undulation[v].m = static_cast<double>(q[v]) * undulation_quantum_m;
+    }
     interpolate_undulations(tile.root, tile.depth, tile.undulation);
 }
 
@@ -312,11 +313,13 @@ std::size_t own_undulations(LocationCode root, int depth) {
     return levels <= 0 ? 0 : tile_layout().vertex_count[static_cast<std::size_t>(std::min(levels, depth))];
 }
 
-void interpolate_undulations(LocationCode root, int depth, std::span<float> undulation) {
+void interpolate_undulations(LocationCode root, int depth, std::span<GeoidUndulation> undulation) {
     const TileLayout& layout = tile_layout();
     const std::size_t all = layout.vertex_count[static_cast<std::size_t>(depth)];
-    for (std::size_t v = std::max<std::size_t>(3, own_undulations(root, depth)); v < all; ++v)
-        undulation[v] = 0.5f * (undulation[layout.ends[v][0]] + undulation[layout.ends[v][1]]);
+    for (std::size_t v = std::max<std::size_t>(3, own_undulations(root, depth)); v < all; ++v) {
+        const auto [a, b] = layout.ends[v];
+        undulation[v].m = static_cast<double>(static_cast<float>(0.5 * (undulation[a].m + undulation[b].m)));
+    }
 }
 
 void own_height_range(Tile& tile, std::span<const std::uint8_t> exists) {
@@ -341,7 +344,8 @@ std::vector<std::uint8_t> encode_tile(const BakedTile& baked, const TileScale& s
     out.u8(static_cast<std::uint8_t>((baked.inner() ? flag_inner : 0) | (scale.has_undulation ? flag_undulation : 0) |
                                      (whole ? flag_whole : 0)));
     out.f32(tile.resampling);
-    const auto q = quanta(tile.height, scale.quantum_m);
+    std::vector<std::int64_t> q;
+    for (const float h : tile.height) q.push_back(in_quanta(static_cast<double>(h), scale.quantum_m));
     write_corners(out, q);
     write_plane16(out, residuals(q));
     if (scale.has_undulation) write_undulations(out, tile);
@@ -360,6 +364,8 @@ Tile decode_tile(LocationCode root, std::span<const std::uint8_t> bytes, const T
     tile.depth = in.u8();
     const std::uint8_t flags = in.u8();
     const bool inner = flags & flag_inner;
+    if (((flags & flag_undulation) != 0) != scale.has_undulation)
+        throw MalformedBytes("its undulations are not the store's");
     if (tile.depth < 1 || tile.depth > tile_levels || (inner && tile.depth != tile_levels) ||
         root.bisection_level() % tile_levels != 0 || root.bisection_level() + tile.depth > max_bisection_level)
         throw MalformedBytes("its depth is not possible");
@@ -367,8 +373,10 @@ Tile decode_tile(LocationCode root, std::span<const std::uint8_t> bytes, const T
     tile.height.resize(tile_layout().vertex_count[static_cast<std::size_t>(tile.depth)]);
     tile.deviation.resize(std::size_t{1} << tile.depth);
     tile.radius.resize(std::size_t{1} << tile.depth);
-    read_lattice(in, true, tile.height.size(), scale.quantum_m, tile.height);
-    if (flags & flag_undulation) read_undulations(in, tile);
+    const auto q = read_lattice(in, true, tile.height.size());
+    for (std::size_t v = 0; v < q.size(); ++v)
+        tile.height[v] = static_cast<float>(static_cast<double>(q[v]) * scale.quantum_m);
+    if (scale.has_undulation) read_undulations(in, tile);
     if (inner)
         read_inner(in, scale, tile);
     else

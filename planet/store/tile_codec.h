@@ -19,14 +19,15 @@ struct TileScale {
 };
 
 /// Undulations are whole multiples of this at vertices that split cells of levels below undulation_level (2.7 km apart
-/// on Earth); at finer vertices they are the mean of the two ends. EGM96 bends by less than 3 mm in between.
+/// on Earth); at finer vertices they are the mean of the two
+/// ends, rounded to float. EGM96 bends by less than 3 mm in between.
 inline constexpr double undulation_quantum_m = 1.0 / 128;
 inline constexpr int undulation_level = 24;
 
 /// How many vertices of a tile have an undulation of their own.
 std::size_t own_undulations(LocationCode root, int depth);
 /// Fills the undulations of the finer vertices from those before them. @param undulation by vertex index
-void interpolate_undulations(LocationCode root, int depth, std::span<float> undulation);
+void interpolate_undulations(LocationCode root, int depth, std::span<GeoidUndulation> undulation);
 
 /// Least and largest height over the tile's own existing vertices.
 void own_height_range(Tile& tile, std::span<const std::uint8_t> exists);

@@ -1,0 +1,106 @@
+#include "planet/elevation/border_blend.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace planet {
+namespace {
+
+constexpr int leaf_points = 8;
+constexpr double closest = 1e-12;  // chord: 6 micrometres on Earth
+
+// At least 0, and monotonic in r.
+double weight(double r, double reach) {
+    if (r >= reach) return 0;
+    const double w = (reach - r) / (reach * std::max(r, closest));
+    return w * w;
+}
+
+}  // namespace
+
+BorderBlend::BorderBlend(std::vector<Point> points) : points_(std::move(points)) {
+    if (!points_.empty()) build(0, static_cast<int>(points_.size()));
+}
+
+void BorderBlend::build(int first, int count) {
+    const auto begin = points_.begin() + first, end = begin + count;
+    Node node;
+    node.first = first;
+    node.count = count;
+    glm::dvec3 low = begin->normal, high = low;
+    node.centre = glm::dvec3(0);
+    for (auto p = begin; p != end; ++p) {
+        low = glm::min(low, p->normal);
+        high = glm::max(high, p->normal);
+        node.centre += p->normal;
+        node.difference += p->difference;
+        node.reach += p->reach;
+        node.max_reach = std::max(node.max_reach, p->reach);
+    }
+    node.centre /= count;
+    node.difference /= count;
+    node.reach /= count;
+    for (auto p = begin; p != end; ++p) node.radius = std::max(node.radius, glm::distance(p->normal, node.centre));
+    const std::size_t index = nodes_.size();
+    nodes_.push_back(node);
+    if (count <= leaf_points) return;
+    const glm::dvec3 size = high - low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const int half = count / 2;
+    std::nth_element(begin, begin + half, end,
+                     [axis](const Point& a, const Point& b) { return a.normal[axis] < b.normal[axis]; });
+    build(first, half);
+    nodes_[index].right = static_cast<int>(nodes_.size());
+    build(first + half, count - half);
+}
+
+void BorderBlend::find_nearest(std::size_t index, const glm::dvec3& p, double& least) const {
+    const Node& node = nodes_[index];
+    if ((glm::distance(p, node.centre) - node.radius) >= least * node.max_reach) return;
+    if (node.right == 0) {
+        for (int i = node.first; i < node.first + node.count; ++i) {
+            const Point& q = points_[static_cast<std::size_t>(i)];
+            least = std::min(least, glm::distance(p, q.normal) / q.reach);
+        }
+        return;
+    }
+    std::size_t near = index + 1, far = static_cast<std::size_t>(node.right);
+    if (glm::distance(p, nodes_[far].centre) < glm::distance(p, nodes_[near].centre)) std::swap(near, far);
+    find_nearest(near, p, least);
+    find_nearest(far, p, least);
+}
+
+void BorderBlend::gather(std::size_t index, const glm::dvec3& p, double& weights, double& total) const {
+    const Node& node = nodes_[index];
+    const double r = glm::distance(p, node.centre);
+    if (r - node.radius >= node.max_reach) return;
+    if (node.radius < 0.125 * r) {
+        const double w = node.count * weight(r, node.reach);
+        weights += w;
+        total += w * node.difference;
+    } else if (node.right == 0) {
+        for (int i = node.first; i < node.first + node.count; ++i) {
+            const Point& q = points_[static_cast<std::size_t>(i)];
+            const double w = weight(glm::distance(p, q.normal), q.reach);
+            weights += w;
+            total += w * q.difference;
+        }
+    } else {
+        gather(index + 1, p, weights, total);
+        gather(static_cast<std::size_t>(node.right), p, weights, total);
+    }
+}
+
+double BorderBlend::operator()(const glm::dvec3& p) const {
+    if (nodes_.empty() || std::isnan(p.x + p.y + p.z)) return 0;
+    double least = 1;  // of distance / reach
+    find_nearest(0, p, least);
+    if (least >= 1) return 0;
+    double weights = 0, total = 0;
+    gather(0, p, weights, total);
+    if (!(weights > 0)) return 0;
+    const double s = 1 - least;
+    return s * s * (3 - 2 * s) * total / weights;
+}
+
+}  // namespace planet

@@ -1,0 +1,48 @@
+#pragma once
+// Leads a coarse field up to the border of a finer one, outside it.
+//
+// Known at points of the border: by how much the finer field is above the coarser one there. Around them the difference
+// is interpolated with the weights of Franke and Little, w = ((D - r)+ / (D r))² (in Franke, "Scattered data
+// interpolation: tests of some methods", Math. Comp. 38, 1982), D the reach and r the distance as a chord, and fades
+// out by a smooth step of the least r / D. So it takes the border's own value at the border, is 0 beyond the reach, and
+// stays between the least and the greatest difference and 0. Clusters of points that appear under less than 1/4 count
+// as one.
+
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace planet {
+
+class BorderBlend {
+  public:
+    struct Point {
+        glm::dvec3 normal;  ///< unit
+        double difference;  ///< m
+        double reach;       ///< > 0, chord on the unit sphere
+    };
+
+    BorderBlend() = default;
+    explicit BorderBlend(std::vector<Point> points);
+
+    /// Metres to add to the coarser field at a unit normal. 0 beyond the reach of every point.
+    double operator()(const glm::dvec3& normal) const;
+
+  private:
+    struct Node {
+        glm::dvec3 centre;                 // mean of its points
+        double radius = 0;                 // all of them are within
+        double difference = 0, reach = 0;  // means
+        double max_reach = 0;
+        int first = 0, count = 0;  // its points
+        int right = 0;             // second child; the first follows its parent. 0: a leaf
+    };
+
+    void build(int first, int count);
+    void find_nearest(std::size_t node, const glm::dvec3& p, double& least) const;
+    void gather(std::size_t node, const glm::dvec3& p, double& weights, double& total) const;
+
+    std::vector<Point> points_;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace planet

@@ -1,0 +1,56 @@
+#pragma once
+// Several elevation fields as one, by priority.
+
+#include <functional>
+#include <memory>
+
+#include "planet/elevation/border_blend.h"
+#include "planet/elevation/elevation_field.h"
+
+namespace planet {
+
+/// The later a layer, the higher its priority. Where a layer has an answer no lower one alters it. Outside it, voids
+/// included, the lower ones are led up to its border over two of their samples (border_blend.h). Where no layer has an
+/// answer the height is 0, led up to borders in the same way, over two samples of the layer that ends there: a layered
+/// field answers everywhere.
+class LayeredField : public ElevationField {
+  public:
+    /// The geoid above the ellipsoid at a unit normal. Must be safe from several threads.
+    using GeoidFunction = std::function<GeoidUndulation(const glm::dvec3&)>;
+
+    /// @param layers   lowest first; at least one
+    /// @param datum    what all heights are turned into
+    /// @param geoid    needed if a layer's datum is another one, else Error(bad_usage)
+    /// @param radius_m of the planet, turns sample spacings into angles
+    LayeredField(std::vector<std::shared_ptr<const ElevationField>> layers, VerticalDatum datum,
+                 GeoidFunction geoid = {}, double radius_m = 6378137);
+
+    VerticalDatum datum() const override { return datum_; }
+    /// Finite for every normal but NaN, which gives NaN.
+    void heights(std::span<const glm::dvec3> normals, std::span<float> out) const override;
+    /// The least of the layers'.
+    double spacing(const Cap& cap) const override;
+    /// Samples that a higher layer covers are left out; those in a blend are as blended.
+    void samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const override;
+    /// Lowest first, each with its own datum.
+    std::vector<SourceInfo> sources() const override;
+
+  private:
+    void to_common_datum(const ElevationField& layer, std::span<const glm::dvec3> normals, std::span<float> h) const;
+    /// The surface of the lowest `count` layers.
+    void heights_of_lowest(std::size_t count, std::span<const glm::dvec3> normals, std::span<float> out) const;
+    void heights_of_piece(std::size_t count, std::span<const glm::dvec3> normals, std::span<float> out) const;
+    /// Leaves the samples of a layer that are not covered by higher ones, corrected.
+    void keep_visible(std::size_t layer, std::vector<glm::dvec3>& normals, std::vector<float>& h) const;
+    BorderBlend make_blend(std::size_t layer) const;
+    /// The sample spacing in metres of the highest of the lowest `count` layers that answers there.
+    double spacing_of_lowest(std::size_t count, const glm::dvec3& normal) const;
+
+    std::vector<std::shared_ptr<const ElevationField>> layers_;
+    std::vector<BorderBlend> blends_;  // by layer; of the lowest `blends_.size()` while the rest is being made
+    VerticalDatum datum_;
+    GeoidFunction geoid_;
+    double radius_m_;
+};
+
+}  // namespace planet

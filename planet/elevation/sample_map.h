@@ -1,0 +1,51 @@
+#pragma once
+// Between directions and the columns and rows of a raster, in any CRS.
+
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "planet/elevation/patch_map.h"
+#include "planet/elevation/raster.h"
+
+namespace planet {
+
+/// Columns and rows are real numbers, whole at pixel centres. Geographic rasters are mapped in closed form, to 1e-9
+/// degrees; others through their CRS, to 1/256 of a sample (patch_map.h). Safe from several threads.
+class SampleMap {
+  public:
+    explicit SampleMap(const Raster& raster);
+    SampleMap(const SampleMap&) = delete;
+    SampleMap& operator=(const SampleMap&) = delete;
+
+    /// (column, row) of unit geodetic normals. For a raster that goes around, the column is within half a turn of the
+    /// raster's middle; else it can lie outside the raster, or be NaN.
+    void samples_from_normals(std::span<const glm::dvec3> normals, std::span<glm::dvec2> samples) const;
+
+    /// Unit normals of (column, row), NaN where the CRS has no position. Meant for the raster's own area, half a sample
+    /// beyond its outer samples included; a latitude beyond a pole is taken for the pole.
+    void normals_from_samples(std::span<const glm::dvec2> samples, std::span<glm::dvec3> normals) const;
+
+  private:
+    void from_longitude_latitude(std::span<const glm::dvec3> normals, std::span<glm::dvec2> samples) const;
+    void project_exactly(std::span<const glm::dvec3> normals, std::span<glm::dvec3> samples) const;
+    void unproject_exactly(std::span<const glm::dvec2> samples, std::span<glm::dvec3> normals) const;
+    void build_patches();
+
+    glm::dvec2 size_;
+    SampleGrid grid_;
+    std::shared_ptr<const CoordinateTransform> transform_;
+    // sample = middle + by_x * (x - x_middle) + by_y * (y - y_middle)
+    glm::dvec2 middle_, crs_middle_, by_x_, by_y_;
+    // Projected rasters: directions by the faces of a cube around the planet, +x -x +y -y +z -z.
+    std::array<std::optional<PatchMap>, 6> from_cube_;
+    std::optional<PatchMap> to_normal_;
+};
+
+/// Longitude and latitude of normals of any length > 0, in radians: atan2(y, x) and atan2(z, hypot(x, y)) within 4e-16,
+/// signs of zeros included, made to run on vector units. NaN gives NaN. All spans have the same size.
+void angles_from_normals(std::span<const glm::dvec3> normals, std::span<double> longitude, std::span<double> latitude);
+
+}  // namespace planet
