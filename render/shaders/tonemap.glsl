@@ -3,7 +3,7 @@
 /// Filmic curve from scene radiance (1: white paper in full sun) to display light 0..1: K. Narkowicz's fit of the ACES
 /// reference transform, after a little cross-talk so that bright saturated light bleaches as film does.
 vec3 filmic(vec3 radiance) {
-    vec3 x = max(radiance, vec3(0.0f)) * sky_exposure.x * 0.9f;
+    vec3 x = max(radiance, vec3(0.0f)) * sky_exposure.x * 1.1f;
     float grey = dot(x, vec3(0.2126f, 0.7152f, 0.0722f));
     x = mix(x, vec3(grey), 0.06f * grey / (1.0f + grey));
     return clamp(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), vec3(0.0f), vec3(1.0f));
