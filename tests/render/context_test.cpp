@@ -16,6 +16,13 @@
 #include "render/gl/shader.h"
 #include "render/gl/texture.h"
 
+#ifdef __SANITIZE_ADDRESS__
+// OSMesa keeps a few hundred bytes of each context.
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:libOSMesa\n";
+}
+#endif
+
 namespace render {
 namespace {
 
