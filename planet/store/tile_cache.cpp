@@ -8,8 +8,8 @@
 namespace planet {
 
 std::size_t bytes_of(const Tile& tile) {
-    return sizeof(Tile) + sizeof(GeoidUndulation) * tile.undulation.capacity() + sizeof(float) * (tile.height.capacity() +
-                                           tile.deviation.capacity() + tile.radius.capacity());
+    return sizeof(Tile) + sizeof(GeoidUndulation) * tile.undulation.capacity() +
+           sizeof(float) * (tile.height.capacity() + tile.deviation.capacity() + tile.radius.capacity());
 }
 
 TileCache::TileCache(const ElevationStore& store, std::size_t memory_bytes) : store_(&store), limit_(memory_bytes) {}

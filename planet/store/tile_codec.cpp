@@ -364,7 +364,8 @@ Tile decode_tile(LocationCode root, std::span<const std::uint8_t> bytes, const T
     tile.depth = in.u8();
     const std::uint8_t flags = in.u8();
     const bool inner = flags & flag_inner;
-    if (((flags & flag_undulation) != 0) != scale.has_undulation) throw MalformedBytes("its undulations are not the store's");
+    if (((flags & flag_undulation) != 0) != scale.has_undulation)
+        throw MalformedBytes("its undulations are not the store's");
     if (tile.depth < 1 || tile.depth > tile_levels || (inner && tile.depth != tile_levels) ||
         root.bisection_level() % tile_levels != 0 || root.bisection_level() + tile.depth > max_bisection_level)
         throw MalformedBytes("its depth is not possible");
