@@ -8,6 +8,7 @@
 
 #include "planet/elevation/sha256.h"
 #include "planet/error.h"
+#include "planet/geodesy/ellipsoid.h"
 #include "render/app/data_path.h"
 #include "render/app/mapped_file.h"
 #include "render/app/output_file.h"
