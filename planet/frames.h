@@ -2,25 +2,20 @@
 // READ FIRST: every coordinate system of the project, its range, handedness and unit.
 //
 //  name          type             range and unit                        what it is
-//  ------------  ---------------  ------------------------------------ ------------------------------------------------
-//  geodetic      Geodetic         latitude [-pi/2, pi/2] rad,           latitude is the angle of the ellipsoid's
-//  normal,
+//  ------------  ---------------  ------------------------------------  ------------------------------------------------
+//  geodetic      Geodetic         latitude [-pi/2, pi/2] rad,           latitude is the angle of the ellipsoid's normal,
 //                                 longitude [-pi, pi] rad, h in m       h the distance along it
 //  normal        glm::dvec3       unit vector                           the geodetic normal (the "n-vector"): the same
-//                                                                       direction as (latitude, longitude), no
-//                                                                       singularity
-//  ecef          glm::dvec3       m, right-handed                       earth-centred, earth-fixed: x through latitude
-//  0
+//                                                                       direction as (latitude, longitude), no singularity
+//  ecef          glm::dvec3       m, right-handed                       earth-centred, earth-fixed: x through latitude 0
 //                                                                       longitude 0, y through longitude 90 E, z north
 //  enu           glm::dvec3       m, right-handed                       local frame: x east, y north, z up
-//  grid          GridPosition     42 bits an axis, 2^-18 m              ecef on a planet-fixed integer grid
-//  (mesh/grid.h);
+//  grid          GridPosition     42 bits an axis, 2^-18 m              ecef on a planet-fixed integer grid (mesh/grid.h);
 //                                                                       a vertex has the same bits wherever it is drawn
-//  code          LocationCode     64 bits                               a cell of the octahedron
-//  (octahedron/location_code.h) view          glm::vec3        m, right-handed, -z ahead             the eye at the
-//  origin, x right, y up clip          glm::vec4        reversed depth: near 1, far 0         what OpenGL takes;
-//  glClipControl(LOWER_LEFT, ZERO_TO_ONE) picture       pixels           x right, y down, origin top left      parts of
-//  2048 x 2048 on a grid fixed at the top left
+//  code          LocationCode     64 bits                               a cell of the octahedron (octahedron/location_code.h)
+//  view          glm::vec3        m, right-handed, -z ahead             the eye at the origin, x right, y up
+//  clip          glm::vec4        reversed depth: near 1, far 0         what OpenGL takes; glClipControl(LOWER_LEFT, ZERO_TO_ONE)
+//  picture       pixels           x right, y down, origin top left      parts of 2048 x 2048 on a grid fixed at the top left
 //
 // Angles are radians inside, degrees at the command line and in files. Lengths are metres. Matrices and conversions are
 // named x_from_y: ecef_from_geodetic, view_from_ecef, clip_from_view.

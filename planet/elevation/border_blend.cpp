@@ -18,7 +18,8 @@ double weight(double r, double reach) {
 
 }  // namespace
 
-BorderBlend::BorderBlend(std::vector<Point> points) : points_(std::move(points)) {
+BorderBlend::BorderBlend(std::vector<Point> points, double clearance)
+    : points_(std::move(points)), clearance_(clearance) {
     if (!points_.empty()) build(0, static_cast<int>(points_.size()));
 }
 
@@ -56,11 +57,11 @@ void BorderBlend::build(int first, int count) {
 
 void BorderBlend::find_nearest(std::size_t index, const glm::dvec3& p, double& least) const {
     const Node& node = nodes_[index];
-    if ((glm::distance(p, node.centre) - node.radius) >= least * node.max_reach) return;
+    if (glm::distance(p, node.centre) - node.radius - clearance_ >= least * node.max_reach) return;
     if (node.right == 0) {
         for (int i = node.first; i < node.first + node.count; ++i) {
             const Point& q = points_[static_cast<std::size_t>(i)];
-            least = std::min(least, glm::distance(p, q.normal) / q.reach);
+            least = std::min(least, std::max(0.0, glm::distance(p, q.normal) - clearance_) / q.reach);
         }
         return;
     }
@@ -73,15 +74,15 @@ void BorderBlend::find_nearest(std::size_t index, const glm::dvec3& p, double& l
 void BorderBlend::gather(std::size_t index, const glm::dvec3& p, double& weights, double& total) const {
     const Node& node = nodes_[index];
     const double r = glm::distance(p, node.centre);
-    if (r - node.radius >= node.max_reach) return;
+    if (r - node.radius >= node.max_reach + clearance_) return;
     if (node.radius < 0.125 * r) {
-        const double w = node.count * weight(r, node.reach);
+        const double w = node.count * weight(r, node.reach + clearance_);
         weights += w;
         total += w * node.difference;
     } else if (node.right == 0) {
         for (int i = node.first; i < node.first + node.count; ++i) {
             const Point& q = points_[static_cast<std::size_t>(i)];
-            const double w = weight(glm::distance(p, q.normal), q.reach);
+            const double w = weight(glm::distance(p, q.normal), q.reach + clearance_);
             weights += w;
             total += w * q.difference;
         }

@@ -22,7 +22,8 @@ class BorderBlend {
     };
 
     BorderBlend() = default;
-    explicit BorderBlend(std::vector<Point> points);
+    /// @param clearance  chord; nearer than this to a point counts as at the border: half the gaps between points
+    BorderBlend(std::vector<Point> points, double clearance);
 
     /// Metres to add to the coarser field at a unit normal. 0 beyond the reach of every point.
     double operator()(const glm::dvec3& normal) const;
@@ -43,6 +44,7 @@ class BorderBlend {
 
     std::vector<Point> points_;
     std::vector<Node> nodes_;
+    double clearance_ = 0;
 };
 
 }  // namespace planet

@@ -12,10 +12,10 @@
 namespace planet {
 namespace {
 
-// 1 / root mean square of the plain noise, by averaging 10^8 random positions.
-constexpr double noise_scale = 3.83;
+// 1 / root mean square of the plain noise, by averaging 8 million random positions (within 0.1 %).
+constexpr double noise_scale = 3.703;
 // The mean of |noise| at that scale, so that folded octaves have mean 0.
-constexpr double mean_absolute = 0.80;
+constexpr double mean_absolute = 0.8155;
 
 std::uint32_t mix(std::uint32_t h) {  // the finalizer of MurmurHash3 (Appleby)
     h ^= h >> 16;

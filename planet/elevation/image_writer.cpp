@@ -46,7 +46,7 @@ void check(const std::string& path, const SinkDescription& d) {
 std::filesystem::path temporary_beside(const std::filesystem::path& file) {
     static std::atomic<int> count{0};
     return file.parent_path() /
-           ("." + file.filename().string() + "." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".part");
+           file.filename().concat("." + std::to_string(getpid()) + "-" + std::to_string(count++) + ".part");
 }
 
 }  // namespace

@@ -110,7 +110,10 @@ BorderBlend LayeredField::make_blend(std::size_t layer) const {
         }
         points.push_back({normals[i], static_cast<double>(fine[i]) - static_cast<double>(coarse[i]), reach});
     }
-    return BorderBlend(std::move(points));
+    // Border points lie half a sample apart along the border; corners are up to 0.36 of one from the nearest.
+    double fine_spacing = std::numeric_limits<double>::infinity();
+    if (!points.empty()) fine_spacing = layers_[layer]->spacing({points.front().normal, 1e-6});
+    return BorderBlend(std::move(points), std::isinf(fine_spacing) ? 0 : 0.36 * fine_spacing / radius_m_);
 }
 
 double LayeredField::spacing(const Cap& cap) const {

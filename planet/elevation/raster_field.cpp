@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numbers>
 
 namespace planet {
 namespace {
@@ -25,6 +26,7 @@ void RasterField::heights(std::span<const glm::dvec3> normals, std::span<float> 
     for (std::size_t first = 0; first < normals.size(); first += std::size(at)) {
         const std::size_t n = std::min(std::size(at), normals.size() - first);
         map_.samples_from_normals(normals.subspan(first, n), {at, n});
+        for (std::size_t i = 0; i < n; ++i) surface_.prefetch(at[i]);
         for (std::size_t i = 0; i < n; ++i) out[first + i] = surface_(at[i]);
     }
 }
@@ -68,44 +70,72 @@ RasterField::Block RasterField::make_block(int column, int row, int columns, int
     return block;
 }
 
+RasterField::Block RasterField::make_group(int column, int row) const {
+    Block group{{0, 0, 0}, 0, std::numeric_limits<double>::infinity()};
+    const int columns = std::min(column + group_size, block_columns_), rows = std::min(row + group_size, block_rows_);
+    for (int j = row; j < rows; ++j)
+        for (int i = column; i < columns; ++i) {
+            const Block& b = block(i, j);
+            if (std::isinf(b.spacing)) continue;
+            if (std::isinf(group.spacing)) group.centre = b.centre;
+            group.angle = std::max(group.angle, angle_between(b.centre, group.centre) + b.angle);
+            group.spacing = std::min(group.spacing, b.spacing);
+        }
+    return group;
+}
+
 void RasterField::build_blocks() {
     const int w = columns_without_repeat(), h = raster_->height;
-    block_columns_ = (w + block_size - 1) / block_size;
-    block_rows_ = (h + block_size - 1) / block_size;
+    block_size_ =
+        std::clamp(std::max(w, h) / 32, 8, max_block);  // a coarse raster of the planet: still some 10 degrees
+    block_columns_ = (w + block_size_ - 1) / block_size_;
+    block_rows_ = (h + block_size_ - 1) / block_size_;
     blocks_.reserve(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_));
-    for (int j = 0; j < h; j += block_size)
-        for (int i = 0; i < w; i += block_size)
-            blocks_.push_back(make_block(i, j, std::min(block_size, w - i), std::min(block_size, h - j)));
+    for (int j = 0; j < h; j += block_size_)
+        for (int i = 0; i < w; i += block_size_)
+            blocks_.push_back(make_block(i, j, std::min(block_size_, w - i), std::min(block_size_, h - j)));
+    for (int j = 0; j < block_rows_; j += group_size)
+        for (int i = 0; i < block_columns_; i += group_size) groups_.push_back(make_group(i, j));
+}
+
+template <class Visit>
+void RasterField::visit_blocks(const Cap& cap, Visit visit) const {
+    double wanted = std::numeric_limits<double>::infinity();
+    const auto meets = [&](const Block& b) {
+        return b.spacing < wanted && angle_between(b.centre, cap.centre) <= b.angle + cap.angle;
+    };
+    std::size_t group = 0;
+    for (int row = 0; row < block_rows_; row += group_size)
+        for (int column = 0; column < block_columns_; column += group_size) {
+            if (!meets(groups_[group++])) continue;
+            for (int j = row; j < std::min(row + group_size, block_rows_); ++j)
+                for (int i = column; i < std::min(column + group_size, block_columns_); ++i)
+                    if (meets(block(i, j))) wanted = visit(i, j, block(i, j));
+        }
 }
 
 double RasterField::spacing(const Cap& cap) const {
     double least = std::numeric_limits<double>::infinity();
-    for (const Block& b : blocks_)
-        if (b.spacing < least && angle_between(b.centre, cap.centre) <= b.angle + cap.angle) least = b.spacing;
+    visit_blocks(cap, [&](int, int, const Block& b) { return least = b.spacing; });
     return least;
 }
 
 void RasterField::samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const {
     const double least_cosine = std::cos(std::min(cap.angle, std::numbers::pi));
-    for (int j = 0; j < block_rows_; ++j)
-        for (int i = 0; i < block_columns_; ++i) {
-            const Block& b = blocks_[static_cast<std::size_t>(j) * static_cast<std::size_t>(block_columns_) +
-                                     static_cast<std::size_t>(i)];
-            if (std::isinf(b.spacing) || angle_between(b.centre, cap.centre) > b.angle + cap.angle) continue;
-            samples_of_block(i * block_size, j * block_size, cap, least_cosine, normals, heights);
-        }
+    visit_blocks(cap, [&](int i, int j, const Block&) {
+        samples_of_block(i * block_size_, j * block_size_, cap, least_cosine, normals, heights);
+        return std::numeric_limits<double>::infinity();
+    });
 }
 
 void RasterField::samples_of_block(int column, int row, const Cap& cap, double least_cosine,
                                    std::vector<glm::dvec3>& normals, std::vector<float>& heights) const {
-    const int columns = std::min(block_size, columns_without_repeat() - column);
-    const int rows = std::min(block_size, raster_->height - row);
-    std::array<glm::dvec2, block_size> at;
-    std::array<glm::dvec3, block_size> line;
+    const int columns = std::min(block_size_, columns_without_repeat() - column);
+    const int rows = std::min(block_size_, raster_->height - row);
+    std::array<glm::dvec3, max_block> line;
     for (int r = row; r < row + rows; ++r) {
         const auto n = static_cast<std::size_t>(columns);
-        for (std::size_t i = 0; i < n; ++i) at[i] = {column + static_cast<double>(i), r};
-        map_.normals_from_samples({at.data(), n}, {line.data(), n});
+        map_.normals_of_row(column, r, {line.data(), n});
         for (std::size_t i = 0; i < n; ++i) {
             const int c = column + static_cast<int>(i);
             if (!(glm::dot(line[i], cap.centre) >= least_cosine) || !surface_.has_sample(c, r)) continue;

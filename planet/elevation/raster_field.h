@@ -21,8 +21,8 @@ class RasterField : public ElevationField {
 
     VerticalDatum datum() const override { return datum_; }
     void heights(std::span<const glm::dvec3> normals, std::span<float> out) const override;
-    /// In blocks of 64 x 64 samples. Where samples are much closer one way than the other (a geographic grid near a
-    /// pole) the shorter spacing counts as at least a quarter of the longer one.
+    /// In blocks of at most 64 x 64 samples. Where samples are much closer one way than the other (a geographic grid
+    /// near a pole) the shorter spacing counts as at least a quarter of the longer one.
     double spacing(const Cap& cap) const override;
     void samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const override;
     std::vector<SourceInfo> sources() const override;
@@ -35,12 +35,22 @@ class RasterField : public ElevationField {
         double angle;    // every sample of the block is within
         double spacing;  // infinity: nothing but voids
     };
-    static constexpr int block_size = 64;
+    static constexpr int max_block = 64;  // samples a side
+    static constexpr int group_size = 8;  // blocks a side
 
     int columns_without_repeat() const;
     void build_blocks();
     Block make_block(int column, int row, int columns, int rows) const;
     double spacing_at(glm::dvec2 sample) const;
+    Block make_group(int column, int row) const;
+    const Block& block(int column, int row) const {
+        return blocks_[static_cast<std::size_t>(row) * static_cast<std::size_t>(block_columns_) +
+                       static_cast<std::size_t>(column)];
+    }
+    /// Calls visit(column, row, block) for every block that may meet the cap and holds samples closer than visit's last
+    /// answer (at first infinity).
+    template <class Visit>
+    void visit_blocks(const Cap& cap, Visit visit) const;
     void samples_of_block(int column, int row, const Cap& cap, double least_cosine, std::vector<glm::dvec3>& normals,
                           std::vector<float>& heights) const;
 
@@ -48,8 +58,9 @@ class RasterField : public ElevationField {
     VerticalDatum datum_;
     SampleMap map_;
     RasterSurface surface_;
+    int block_size_ = max_block;
     int block_columns_ = 0, block_rows_ = 0;
-    std::vector<Block> blocks_;
+    std::vector<Block> blocks_, groups_;  // row-major; a group bounds group_size x group_size blocks
 };
 
 /// Reads a file and makes a field of it.

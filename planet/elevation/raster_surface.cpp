@@ -213,6 +213,19 @@ float RasterSurface::fast_or_careful(const Sample* samples, glm::dvec2 at) const
     return sum(weights(s) * ((y[0] * r0 + y[1] * r1) + (y[2] * r2 + y[3] * r3)));
 }
 
+void RasterSurface::prefetch(glm::dvec2 at) const {
+    if (!(at.x >= 1 && at.y >= 1 && at.x < raster_.width - 2 && at.y < raster_.height - 2)) return;
+    const std::ptrdiff_t w = raster_.width;
+    const std::ptrdiff_t first = (static_cast<std::ptrdiff_t>(at.y) - 1) * w + static_cast<std::ptrdiff_t>(at.x) - 1;
+    for (std::ptrdiff_t row = 0; row < 4; ++row) {
+        const std::ptrdiff_t i = first + row * w;
+        if (shorts_)
+            __builtin_prefetch(shorts_ + i);
+        else
+            __builtin_prefetch(floats_ + i);
+    }
+}
+
 float RasterSurface::operator()(glm::dvec2 at) const {
     constexpr double rim = 0.5 + 1e-9;  // a position at the very edge counts as inside whatever its rounding
     const double slack = around_ > 0 ? raster_.width : rim;

@@ -38,6 +38,10 @@ class RasterSurface {
     /// raster that goes around may lie up to a turn outside.
     float operator()(glm::dvec2 sample) const;
 
+    /// Asks memory for the samples around a position, some hundred positions before they are used: scattered ones then
+    /// wait for many cache lines at once.
+    void prefetch(glm::dvec2 sample) const;
+
     /// Whether a pixel holds a height (or water); columns wrap, rows beyond a pole or the raster do not.
     bool has_sample(int column, int row) const;
     int columns_around() const { return around_; }

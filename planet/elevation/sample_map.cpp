@@ -34,7 +34,7 @@ inline double arctangent(double y, double x) {
         1.945506571482613964425e2;
     double angle = t + t * (z * p / q) + (second ? std::numbers::pi / 4 : 0.0);
     angle = a > b ? std::numbers::pi / 2 - angle : angle;
-    angle = std::signbit(x) ? std::numbers::pi - angle : angle;
+    angle = std::copysign(1.0, x) < 0 ? std::numbers::pi - angle : angle;
     return std::copysign(angle + 0 * (a + b), y);  // NaN and infinities give NaN
 }
 
@@ -96,6 +96,11 @@ SampleMap::SampleMap(const Raster& raster)
     by_x_ = glm::dvec2(grid_.per_row.y, -grid_.per_column.y) / d;
     by_y_ = glm::dvec2(-grid_.per_row.x, grid_.per_column.x) / d;
     if (transform_) build_patches();
+    if (transform_ || grid_.per_column.y != 0 || grid_.per_row.x != 0) return;
+    for (int column = 0; column < raster.width; ++column) {
+        const double longitude = grid_.crs_from_sample({column, 0}).x * degrees;
+        meridians_.emplace_back(std::cos(longitude), std::sin(longitude));
+    }
 }
 
 void SampleMap::samples_from_normals(std::span<const glm::dvec3> normals, std::span<glm::dvec2> samples) const {
@@ -132,6 +137,19 @@ void SampleMap::normals_from_samples(std::span<const glm::dvec2> samples, std::s
         return;
     }
     for (std::size_t i = 0; i < samples.size(); ++i) normals[i] = glm::normalize((*to_normal_)(samples[i]));
+}
+
+void SampleMap::normals_of_row(int first_column, int row, std::span<glm::dvec3> normals) const {
+    if (meridians_.empty()) {
+        std::vector<glm::dvec2> samples;
+        for (std::size_t i = 0; i < normals.size(); ++i)
+            samples.emplace_back(first_column + static_cast<double>(i), row);
+        return normals_from_samples(samples, normals);
+    }
+    const double latitude = std::clamp(grid_.crs_from_sample({0, row}).y, -90.0, 90.0) * degrees;
+    const double c = std::cos(latitude), s = std::sin(latitude);
+    const glm::dvec2* const meridian = meridians_.data() + first_column;
+    for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = {c * meridian[i].x, c * meridian[i].y, s};
 }
 
 void SampleMap::project_exactly(std::span<const glm::dvec3> normals, std::span<glm::dvec3> samples) const {

@@ -26,6 +26,7 @@ struct AirRay {
     float enter;
     float leave;
     float power;
+    vec3 ratio;  ///< optical depth in each channel over that in green
 };
 
 const float air_azimuths = 64.0f;
@@ -59,12 +60,14 @@ AirRay air_ray(vec3 direction) {
     ray.leave = mu > 0.0f ? sky_disc.y / max(rmu + top_half, 1.0f) : top_half - rmu;
     if (outside && (mu > 0.0f || top_disc <= 0.0f)) ray.leave = ray.enter - 1.0f;
     ray.power = sky_map.w;
+    ray.ratio = vec3(sky_ratio_above);
     float x;
     float rows = air_ground_rows + air_sky_rows;
     if (hits_ground) {
         float half_chord = sqrt(ground_disc);
         ray.leave = -sky_disc.x / max(half_chord - rmu, 1.0f);
         ray.power = sky_map.z;
+        ray.ratio = vec3(sky_ratio_below);
         float incidence = half_chord / sky_disc.z;  // cosine at the ground
         x = sqrt(clamp(1.0f - sqrt(max(1.0f - incidence, 0.0f)), 0.0f, 1.0f));
         ray.elevation = inset(1.0f - x, air_ground_rows) * air_ground_rows / rows;
@@ -87,8 +90,10 @@ Air air_along(AirRay ray, float distance) {
     vec4 texel = textureLod(air_table, vec3(inset(ray.azimuth, air_azimuths), ray.elevation, inset(u, air_slices)), 0.0f);
     // rgb: mean source function (Chandrasekhar's J) scaled; a: log of the mean extinction in green, per 1000 km.
     float depth = exp(texel.w) * length_in_air * 1.0e-6f;
-    air.transmittance = exp(-depth * vec3(sky_depth_ratio));
-    air.in_scatter = (vec3(1.0f) - air.transmittance) * vec3(texel) * sky_depth_ratio.w;
+    air.transmittance = exp(-depth * ray.ratio);
+    // The night's own glow keeps the limb and the sky from pure black.
+    vec3 source = vec3(texel) * sky_ratio_below.w + vec3(0.5f, 0.8f, 1.1f) * sky_exposure.z;
+    air.in_scatter = (vec3(1.0f) - air.transmittance) * source;
     return air;
 }
 

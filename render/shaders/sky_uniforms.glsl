@@ -5,7 +5,8 @@ vec4 sky_up;            // xyz: unit vector from the planet's centre to the eye,
 vec4 sky_side;          // xyz: unit, across sky_up towards the sun's azimuth, sphere space; w: a/b
 vec4 sky_disc;          // x: ground^2 - r^2, y: top^2 - r^2, z: ground radius, w: top radius
 vec4 sky_map;           // x: chord to the horizon, y: 1 outside the air, z, w: depth powers below and above the horizon
-vec4 sky_depth_ratio;   // rgb: optical depth in each channel over that in green; w: 1 / J scale of the air table
+vec4 sky_ratio_below;   // rgb: optical depth in each channel over that in green, rays to the ground; w: 1 / J scale
+vec4 sky_ratio_above;   // rgb: the same for rays that miss the ground
 vec4 sky_sun;           // xyz: unit vector to the sun, ecef; w: cosine of its angular radius
 vec4 sky_sunlight;      // rgb: irradiance of the sun outside the air; w: wind speed over the sea, m/s
 vec4 sky_detail;        // xyz: the eye's ecef position modulo 2^17 m; w: side of a texel of the imagery, m

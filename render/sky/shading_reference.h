@@ -1,7 +1,7 @@
 #pragma once
 // The shaders' text as C++: the same mathematics on the CPU, pixel by pixel, for tests and previews. Not fast.
 // Samplers are lookups with the filters of atmosphere.h; the functions of the shaders are members of Shading, and the
-// uniforms its inherited members. One object per thread is not needed: everything is const after it is set up.
+// uniforms its inherited members. They change nothing, so threads can share an object.
 
 #include <glm/glm.hpp>
 
@@ -34,7 +34,9 @@ struct Shading : SkyUniforms {
     RepeatedVolume noise_table;
 
     Shading(const SkyUniforms& uniforms, const AtmosphereTables& tables, const ViewTable& view)
-        : SkyUniforms(uniforms), air_table{&view.air}, sun_light_table{&tables.sun_light},
+        : SkyUniforms(uniforms),
+          air_table{&view.air},
+          sun_light_table{&tables.sun_light},
           sky_light_table{&tables.sky_light} {}
 
 #include "render/shaders/atmosphere.glsl"

@@ -23,10 +23,10 @@ double smooth(double a, double b, double x) {
 /// The eye among the spheres.
 struct View {
     AirProfile profile;
-    dvec3 up, side;     // sphere space, unit
-    double r, sun_mu;   // the eye's radius; the sun's cosine with up
+    dvec3 up, side;    // sphere space, unit
+    double r, sun_mu;  // the eye's radius; the sun's cosine with up
     bool outside;
-    double chord;       // chord of the angle from the zenith to the horizon
+    double chord;  // chord of the angle from the zenith to the horizon
     double power_below, power_above;
 };
 
@@ -119,6 +119,12 @@ void march(const View& v, const Ray& ray, std::array<Step, steps>& path, Depths&
     }
 }
 
+/// What a picture has instead of a spectrum of its own at every texel.
+struct Ratios {
+    dvec3 below{1}, above{1};
+    const dvec3& of_row(int row) const { return row < air_ground_rows ? below : above; }
+};
+
 /// depth_c over depth_green by least squares, weighted to where the air is clear enough to be seen through.
 dvec3 fit_ratio(const std::vector<Depths>& depths) {
     dvec3 cross(0);
@@ -158,8 +164,8 @@ using Azimuths = std::array<Azimuth, air_azimuths>;
 
 Azimuths azimuths_of(const View& v, const Ray& ray, double g) {
     Azimuths all;
-    const double side = std::sqrt(std::max(0.0, 1 - ray.mu * ray.mu)) *
-                        std::sqrt(std::max(0.0, 1 - v.sun_mu * v.sun_mu));
+    const double side =
+        std::sqrt(std::max(0.0, 1 - ray.mu * ray.mu)) * std::sqrt(std::max(0.0, 1 - v.sun_mu * v.sun_mu));
     for (int i = 0; i < air_azimuths; ++i) {
         const double x = double(i) / (air_azimuths - 1), cosine = 1 - 2 * x * x;
         const double nu = std::clamp(ray.mu * v.sun_mu + side * cosine, -1.0, 1.0);
@@ -189,8 +195,8 @@ glm::vec3 scattered(const View& v, const Step& s, const SourceRow& row, double d
 }
 
 /// Writes J and the mean extinction of one slice of a row.
-void write_slice(TableImage& air, int row, int slice, const Azimuths& all, const dvec3& depth_by_ratio, double extinction,
-                 const glm::vec3& sunlight) {
+void write_slice(TableImage& air, int row, int slice, const Azimuths& all, const dvec3& depth_by_ratio,
+                 double extinction, const glm::vec3& sunlight) {
     glm::vec3 scale(0);
     for (int c = 0; c < 3; ++c) {
         const double absorbed = -std::expm1(-depth_by_ratio[c]);
@@ -203,9 +209,9 @@ void write_slice(TableImage& air, int row, int slice, const Azimuths& all, const
 
 class RowMaker {
   public:
-    RowMaker(const AtmosphereTables& tables, const View& view, const glm::vec3& sunlight, const dvec3& ratio,
+    RowMaker(const AtmosphereTables& tables, const View& view, const glm::vec3& sunlight, const Ratios& ratios,
              TableImage& out)
-        : tables_(tables), view_(view), sunlight_(sunlight), ratio_(ratio), out_(out) {}
+        : tables_(tables), view_(view), sunlight_(sunlight), ratios_(ratios), out_(out) {}
 
     void make(int row) {
         const Ray ray = ray_of_row(view_, row);
@@ -223,42 +229,42 @@ class RowMaker {
             const int slice = (i + 1) / substeps;
             const double green = depths[static_cast<std::size_t>(slice)].g;
             const double length = distance_at(ray, double(slice) / (air_slices - 1)) - ray.enter;
-            write_slice(out_, row, slice, all, ratio_ * green, green / length, sunlight_);
+            write_slice(out_, row, slice, all, ratios_.of_row(row) * green, green / length, sunlight_);
         }
     }
 
   private:
     /// The limit at no depth: the local source over the local extinction, as of one metre of air.
     void first_slice(const Ray& ray, int row, Azimuths& all) {
-        const double radius =
-            std::sqrt(view_.r * view_.r + ray.enter * ray.enter + 2 * view_.r * ray.mu * ray.enter);
+        const double radius = std::sqrt(view_.r * view_.r + ray.enter * ray.enter + 2 * view_.r * ray.mu * ray.enter);
         const double height = std::max(0.0, radius - view_.profile.ground());
         const AirSample air = view_.profile.at(height);
-        const Step s{ray.enter, radius, height, air.rayleigh, glm::vec3(static_cast<float>(air.mie)),
-                     air.rayleigh + air.mie};
+        const Step s{
+            ray.enter, radius, height, air.rayleigh, glm::vec3(static_cast<float>(air.mie)), air.rayleigh + air.mie};
         blend_row(tables_, height, sources_);
         for (Azimuth& a : all) a.sum = scattered(view_, s, sources_, view_.profile.dip(height), a);
-        write_slice(out_, row, 0, all, ratio_ * air.extinction.g, air.extinction.g, sunlight_);
+        write_slice(out_, row, 0, all, ratios_.of_row(row) * air.extinction.g, air.extinction.g, sunlight_);
         for (Azimuth& a : all) a.sum = glm::vec3(0);
     }
 
     const AtmosphereTables& tables_;
     const View& view_;
     glm::vec3 sunlight_;
-    dvec3 ratio_;
+    Ratios ratios_;
     TableImage& out_;
     SourceRow sources_;
 };
 
-dvec3 ratio_of(const View& view) {
-    std::vector<Depths> depths;
+Ratios ratios_of(const View& view) {
+    std::vector<Depths> below, above;
     std::array<Step, steps> path;
-    for (int row = 0; row < rows; row += 4) march(view, ray_of_row(view, row), path, depths.emplace_back());
-    return fit_ratio(depths);
+    for (int row = 0; row < rows; row += 4)
+        march(view, ray_of_row(view, row), path, (row < air_ground_rows ? below : above).emplace_back());
+    return {fit_ratio(below), fit_ratio(above)};
 }
 
 SkyUniforms uniforms_of(const AtmosphereTables& tables, const View& v, const dvec3& eye, const dvec3& sun,
-                        const dvec3& ratio) {
+                        const Ratios& ratios) {
     const Atmosphere& air = tables.air;
     const double ground = v.profile.ground(), top = v.profile.top();
     constexpr double period = 131072;  // 2^17 m
@@ -267,7 +273,8 @@ SkyUniforms uniforms_of(const AtmosphereTables& tables, const View& v, const dve
     u.sky_side = {v.side, air.equatorial_radius / air.polar_radius};
     u.sky_disc = {(ground - v.r) * (ground + v.r), (top - v.r) * (top + v.r), ground, top};
     u.sky_map = {v.chord, v.outside ? 1 : 0, v.power_below, v.power_above};
-    u.sky_depth_ratio = {ratio, 1 / source_scale};
+    u.sky_ratio_below = {ratios.below, 1 / source_scale};
+    u.sky_ratio_above = {ratios.above, 0};
     u.sky_sun = {sun, std::cos(air.sun_angular_radius)};
     u.sky_sunlight = {std::numbers::pi * dvec3(1), 7.0};
     u.sky_detail = {eye - period * glm::floor(eye / period), 9784.0};
@@ -285,13 +292,13 @@ dvec3 sphere_from_ecef(const Atmosphere& air, const dvec3& v) {
 ViewTable make_view_table(const AtmosphereTables& tables, const dvec3& eye, const dvec3& sun, unsigned threads) {
     assert(tables.source.size() == std::size_t{source_heights} * sun_steps);
     const View view = view_of(tables.air, eye, sun);
-    const dvec3 ratio = ratio_of(view);
-    ViewTable result{{air_azimuths, rows, air_slices, {}}, uniforms_of(tables, view, eye, sun, ratio)};
+    const Ratios ratios = ratios_of(view);
+    ViewTable result{{air_azimuths, rows, air_slices, {}}, uniforms_of(tables, view, eye, sun, ratios)};
     result.air.texels.resize(std::size_t{air_azimuths} * rows * air_slices);
     const glm::vec3 sunlight(result.uniforms.sky_sunlight);
     const int workers = static_cast<int>(std::clamp(threads, 1u, 16u));
     const auto work = [&](int first) {
-        RowMaker maker(tables, view, sunlight, ratio, result.air);
+        RowMaker maker(tables, view, sunlight, ratios, result.air);
         for (int row = first; row < rows; row += workers) maker.make(row);
     };
     std::vector<std::jthread> others;

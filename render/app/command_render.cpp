@@ -1,0 +1,78 @@
+// octaglobe render: a picture.
+
+#include <memory>
+
+#include "render/app/picture.h"
+#include "render/app/program.h"
+#include "render/app/progress.h"
+#include "render/app/render_options.h"
+#include "render/app/report.h"
+
+namespace render {
+namespace {
+
+struct Options {
+    RenderOptions render;
+    std::string json;
+};
+
+nlohmann::ordered_json sources_json(const std::vector<planet::SourceInfo>& sources) {
+    auto list = nlohmann::ordered_json::array();
+    for (const auto& source : sources)
+        list.push_back({{"name", source.name},
+                        {"sha256", source.checksum},
+                        {"crs", source.crs},
+                        {"vertical_datum", planet::name_of(source.datum)},
+                        {"spacing_m", source.spacing_m}});
+    return list;
+}
+
+void fill(Report& report, const RenderOptions& options, const PictureReport& picture) {
+    report.set("output", options.output.native());
+    report.set("width_pixels", options.size.width);
+    report.set("height_pixels", options.size.height);
+    report.set("latitude_deg", options.at.latitude / planet::degrees);
+    report.set("longitude_deg", options.at.longitude / planet::degrees);
+    report.set("eye_height_m", picture.eye_height_m);
+    report.set("time", planet::iso8601_from_utc(options.time));
+    report.set("triangles", picture.triangles);
+    report.set("vertices", picture.vertices);
+    report.set("strip_indices", picture.strip_indices);
+    report.set("tiles", picture.tiles);
+    report.set("deviation_max_m", picture.deviation_max_m);
+    report.set("pixel_deviation_max", picture.pixel_deviation_max);
+    report.set("pixel_deviation_bound", options.max_pixel_deviation);
+    report.set("exaggeration", options.exaggeration);
+    report.set("crs", picture.crs);
+    report.set("vertical_datum", picture.vertical_datum);
+    report.set("sources", sources_json(picture.sources));
+    report.set("backend", picture.backend);
+    report.set("gl_version", picture.gl_version);
+    report.set("gl_renderer", picture.gl_renderer);
+    for (const auto& [step, seconds] : picture.seconds) report.add_seconds(step, seconds);
+}
+
+}  // namespace
+
+void add_render(CLI::App& program) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = add_command(
+        program, "render", "Draw a picture",
+        "octaglobe render -o globe.png\n"
+        "  octaglobe render --at 37.58,-105.49 --range 60km --heading 30 --pitch -25 --size 1920x1080 -o blanca.png");
+    add_picture_options(*command, options->render);
+    add_json_option(*command, options->json);
+    command->final_callback([options, command] {
+        RenderOptions& render = options->render;
+        if (render.height && command->count("--pitch") == 0) render.pitch = 0;
+        Progress progress;
+        render.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };
+        Report report("render", options->json);
+        // Refuses an output that cannot be written before the work, not after it.
+        { const OutputFile writable("--output", render.output); }
+        fill(report, render, draw_picture(render));
+        report.write();
+    });
+}
+
+}  // namespace render

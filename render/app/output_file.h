@@ -1,0 +1,35 @@
+#pragma once
+// A small output file that appears whole or not at all.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace render {
+
+/// Opens a temporary file beside the target at once, so that an unwritable target is refused before any work is done;
+/// commit() writes the bytes and renames it over the target. A link is followed: what it points to is replaced. A
+/// target that is no regular file (a pipe, /dev/stdout) cannot be replaced and is written in place, in one go. Without
+/// commit() nothing is left behind.
+class OutputFile {
+  public:
+    /// Throws planet::Error(bad_usage) naming `where` (the option) if the file cannot be written.
+    OutputFile(std::string where, std::filesystem::path target);
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    ~OutputFile();
+
+    /// Once. Throws planet::Error(bad_usage), leaving the old file untouched, if the bytes cannot all be written.
+    void commit(std::string_view bytes);
+
+  private:
+    [[noreturn]] void fail(int error) const;
+    void abandon() noexcept;
+
+    std::string where_;
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;  ///< empty when the target is written in place
+    int descriptor_ = -1;
+};
+
+}  // namespace render

@@ -1,0 +1,36 @@
+#pragma once
+// One settled picture, from options to file.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "planet/elevation/elevation_field.h"
+#include "render/app/render_options.h"
+
+namespace render {
+
+/// What was drawn, for the report. Counts are of what was built for this view.
+struct PictureReport {
+    std::uint64_t triangles = 0;
+    std::uint64_t vertices = 0;
+    std::uint64_t strip_indices = 0;
+    std::uint64_t tiles = 0;         ///< elevation tiles in use
+    double deviation_max_m = 0;      ///< largest certified deviation of a drawn cell
+    double pixel_deviation_max = 0;  ///< pixels, certified, over the picture
+    double eye_height_m = 0;         ///< above the ellipsoid
+    bool damaged = false;            ///< a tile could not be read, and its parent stood in for it
+    std::string crs;                 ///< of what is drawn, e.g. "EPSG:4979"
+    std::string vertical_datum;
+    std::vector<planet::SourceInfo> sources;
+    std::string backend;  ///< the way in that was taken, never "auto"
+    std::string gl_version;
+    std::string gl_renderer;
+    std::vector<std::pair<std::string, double>> seconds;  ///< step, seconds
+};
+
+/// Draws the picture and writes options.output, whole or not at all; its format is that of the file name's ending.
+/// Throws planet::Error: bad_usage (the output cannot be written), bad_data (a source), no_graphics.
+PictureReport draw_picture(const RenderOptions& options);
+
+}  // namespace render

@@ -1,0 +1,76 @@
+#pragma once
+// What a picture is of: everything `octaglobe render` can be told. The same options give the same bytes, so nothing in
+// here may default to the clock, the machine or chance.
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "planet/frames.h"
+#include "planet/geodesy/utc_time.h"
+#include "render/app/earth.h"
+#include "render/app/values.h"
+#include "render/gl/context.h"
+
+namespace CLI {
+class App;
+}
+
+namespace render {
+
+/// What --show adds to a picture. The bits of RenderOptions::show.
+enum class Overlay : std::uint32_t {
+    mesh = 1,    ///< the sides of the triangles
+    levels = 2,  ///< a colour for each level
+    curve = 4,   ///< the Sierpinski curve through the triangles
+};
+
+struct RenderOptions {
+    /// The place the picture is about, h = 0. What "ground" means below is the drawn surface there: the terrain with
+    /// its exaggeration, or the sea. Default: the middle of the land hemisphere's southern half, which shows Africa,
+    /// Europe and the Atlantic.
+    planet::Geodetic at{12 * planet::degrees, 12 * planet::degrees, {}};
+
+    /// Where the eye is. With `height`: above `at`, that many metres over the ground. Else `range` metres from the
+    /// ground at `at`, so placed that it looks at it. With neither: the range at which the whole globe fits.
+    std::optional<double> range{};   ///< m, 1..1e9
+    std::optional<double> height{};  ///< m, 0.1..1e9
+    double heading = 0;  ///< rad clockwise from north, 0..2 pi: where the eye looks (straight down: what is up)
+    double pitch = -90 * planet::degrees;  ///< rad, -pi/2 (straight down)..pi/2
+    double fov = 40 * planet::degrees;     ///< rad, across the shorter side of the picture, 1..150 degrees
+    PictureSize size{1920, 1080};
+
+    /// Places the sun and the stars. Default 2026-06-21T09:00:00Z: the June solstice, morning over Africa.
+    planet::UtcTime time = std::chrono::sys_days{std::chrono::year{2026} / 6 / 21} + std::chrono::hours{9};
+
+    double exaggeration = 1;           ///< of heights, 0..100
+    double max_pixel_deviation = 0.5;  ///< pixels, 0.05..100: the certified bound on what the mesh may be off
+    std::uint32_t show = 0;            ///< Overlay bits
+    int samples = 1;                   ///< a pixel: 1, 2, 4 or 8; at most what the context has
+    int threads = 0;                   ///< 1..256; 0: as many as there are processors. Changes no byte
+    BackendChoice backend = BackendChoice::automatic;
+
+    EarthSources earth{};
+    std::optional<std::filesystem::path> store{};  ///< a baked store instead of the default Earth
+    std::vector<std::filesystem::path> imagery{};  ///< pictures of the whole globe, later on top
+
+    std::filesystem::path output = "globe.png";
+
+    /// Told how far a step is, 0..1 or NaN, from any thread. Never null.
+    std::function<void(std::string_view step, double fraction)> progress = [](std::string_view, double) {};
+
+    bool shows(Overlay overlay) const { return (show & static_cast<std::uint32_t>(overlay)) != 0; }
+};
+
+/// Adds --elevation and --elevation-datum. What the options are put into must live as long as the parser. Values are
+/// checked while parsing (planet::Error, bad_usage).
+void add_elevation_options(CLI::App& command, EarthSources& sources);
+
+/// Adds all options of a picture but --json.
+void add_picture_options(CLI::App& command, RenderOptions& options);
+
+}  // namespace render

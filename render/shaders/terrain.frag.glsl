@@ -1,0 +1,43 @@
+#version 450 core
+#include "atmosphere.glsl"
+#include "surface.glsl"
+#include "tonemap.glsl"
+
+layout(binding = 4) uniform samplerCube day_cube;      ///< rgb colour, a the part that is water
+layout(binding = 5) uniform samplerCube night_cube;    ///< lights
+layout(binding = 6) uniform samplerCube relief_cube;   ///< twice the terrain normal's offset from the geodetic one
+layout(binding = 7) uniform sampler2DArray patches;    ///< the same offset over patch_range, a: how much to believe it
+
+uniform vec3 eye;              ///< ecef, m, rounded
+uniform vec2 shape;            ///< (a/b)^2, the polar stretch of normals; exaggeration
+uniform float pixel_angle;     ///< rad
+uniform float patch_range;
+
+in vec3 view;
+in vec2 patch_uv;
+in float orthometric;
+flat in int layer;
+layout(location = 0) out vec4 color;
+
+void main() {
+    vec3 place = eye + view;
+    SurfaceInput s;
+    s.view = view;
+    s.normal = normalize(vec3(place.xy, place.z * shape.x));
+    vec4 day = texture(day_cube, s.normal);
+    s.imagery = day.rgb;
+    s.water = day.a;
+    s.night = texture(night_cube, s.normal).rgb;
+    vec3 offset = texture(relief_cube, s.normal).xyz * 0.5;
+    vec2 dx = dFdx(patch_uv), dy = dFdy(patch_uv);
+    // A loop of at most one turn: software rasterizers skip a loop that no pixel enters, but never a branch.
+    for (int turn = layer; turn >= 0; turn = -1) {
+        vec4 fine = textureGrad(patches, vec3(patch_uv, float(turn)), dx, dy);
+        offset = mix(offset, fine.xyz * patch_range, fine.w);
+    }
+    s.terrain_normal = normalize(s.normal + offset * shape.y);
+    s.height = orthometric;
+    s.footprint = length(view) * pixel_angle;
+    vec3 radiance = aerial(surface_radiance(s), view);
+    color = vec4(display_from_radiance(radiance, gl_FragCoord.xy + sky_picture.xy), 1.0);
+}
