@@ -29,7 +29,7 @@ class RootCollector {
     void cell(const PlacedTile& t, unsigned i) {
         if (i >> t.depth) {
             // A leaf of this tile, unless a child tile goes on. Its parent was not hidden: draw it.
-            const PlacedTile* child = t.depth == tile_levels ? t.child(tiles_, i - tile_cells) : nullptr;
+            const PlacedTile* child = t.depth == tile_levels ? t.child(tiles_, i - tile_cells, view_.test) : nullptr;
             if (child)
                 cell(*child, 1);
             else
