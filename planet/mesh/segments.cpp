@@ -160,7 +160,7 @@ class SegmentBuilder {
     std::vector<std::uint8_t> leaf_levels;
     std::size_t tile_visits = 0;
     bool damaged = false;
-    double ratio_max = 0;
+    double ratio_max = 0, deviation_max = 0;
 
     std::span<const std::uint32_t> indices() const { return strip_.indices().span(); }
 
@@ -182,6 +182,7 @@ class SegmentBuilder {
     void certify(const SplitRecord& s) {
         if (!(s.deviation > 0)) return;
         const double reach = glm::distance(glm::dvec3(s.x, s.y, s.z), view_.test.eye) - static_cast<double>(s.radius);
+        deviation_max = std::max(deviation_max, static_cast<double>(s.deviation));
         ratio_max = std::max(ratio_max, view_.test.K * static_cast<double>(s.deviation) / reach);
     }
 
@@ -226,7 +227,7 @@ void Segments::build(const TileSource& tiles, const SegmentView& view, int threa
     leaf_levels_.clear();
     tiles_ = 0;
     damaged_ = false;
-    ratio_max_ = 0;
+    ratio_max_ = deviation_max_ = 0;
     for (const auto& b : runs) {
         const auto vertex = static_cast<std::uint32_t>(vertices_.size());
         const auto index = static_cast<std::uint32_t>(indices_.size());
@@ -243,6 +244,7 @@ void Segments::build(const TileSource& tiles, const SegmentView& view, int threa
         tiles_ += b->tile_visits;
         damaged_ = damaged_ || b->damaged;
         ratio_max_ = std::max(ratio_max_, b->ratio_max);
+        deviation_max_ = std::max(deviation_max_, b->deviation_max);
     }
 }
 

@@ -60,6 +60,8 @@ class Segments {
     bool damaged() const { return damaged_; }
     /// The certificate: the largest projected deviation of the picture is at most max_pixel_deviation times this.
     double ratio_max() const { return ratio_max_; }
+    /// The largest deviation of a leaf from the finest surface, metres, exaggerated.
+    double deviation_max_m() const { return deviation_max_; }
 
   private:
     std::vector<Segment> segments_;
@@ -68,7 +70,7 @@ class Segments {
     std::vector<std::uint8_t> leaf_levels_;
     std::size_t tiles_ = 0;
     bool damaged_ = false;
-    double ratio_max_ = 0;
+    double ratio_max_ = 0, deviation_max_ = 0;
 };
 
 }  // namespace planet

@@ -50,8 +50,8 @@ void read_plane16(ByteReader& in, std::span<std::uint64_t> values) {
 
 // ---- heights and undulations: the three corners, then what each vertex differs from the mean of its ends ------------
 
-std::int64_t mean_of_ends(std::span<const std::int64_t> q, std::size_t v) {
-    const auto [a, b] = tile_layout().ends[v];
+std::int64_t mean_of_ends(const TileLayout& layout, std::span<const std::int64_t> q, std::size_t v) {
+    const auto [a, b] = layout.ends[v];
     return (q[a] + q[b]) >> 1;
 }
 
@@ -61,7 +61,7 @@ std::int64_t in_quanta(double value, double quantum) {
 
 std::vector<std::uint64_t> residuals(std::span<const std::int64_t> q) {
     std::vector<std::uint64_t> r;
-    for (std::size_t v = 3; v < q.size(); ++v) r.push_back(zigzag(q[v] - mean_of_ends(q, v)));
+    for (std::size_t v = 3; v < q.size(); ++v) r.push_back(zigzag(q[v] - mean_of_ends(tile_layout(), q, v)));
     return r;
 }
 
@@ -81,10 +81,11 @@ std::span<const std::int64_t> read_lattice(ByteReader& in, bool wide, std::size_
     else
         read_plane8(in, residual);
     const auto in_range = [](std::int64_t v) { return v >= -largest_height_quanta && v <= largest_height_quanta; };
+    const TileLayout& layout = tile_layout();
     bool fits = in_range(q[0]) && in_range(q[1]) && in_range(q[2]);
     for (std::size_t v = 3; v < count && fits; ++v) {
         const std::int64_t r = unzigzag(residual[v - 3]);
-        q[v] = mean_of_ends(q, v) + std::clamp(r, -4 * largest_height_quanta, 4 * largest_height_quanta);
+        q[v] = mean_of_ends(layout, q, v) + std::clamp(r, -4 * largest_height_quanta, 4 * largest_height_quanta);
         fits = in_range(q[v]);
     }
     if (!fits) throw MalformedBytes("a height is out of range");
@@ -160,8 +161,8 @@ struct SideGains {
 void settle_leaf(Tile& tile, std::span<const std::uint8_t> exists, const SideGains& gains, const TileLattice& lattice) {
     own_deviation(lattice, tile.deviation);
     corner_radii(lattice, exists, false, {}, tile.radius);
-    const Saturation s{tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
     const TileLayout& layout = tile_layout();
+    const Saturation s{layout, tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
     const auto sides = side_cells(tile.depth);
     std::size_t k = sides.size(), g = gains.deviation.size();
     for (unsigned first = 1u << (tile.depth - 1); first > 0; first >>= 1) {
@@ -266,8 +267,8 @@ void read_inner(ByteReader& in, const TileScale& scale, Tile& tile) {
     // The radii in between, as the bake had them. Deviations are saturated already, so raising leaves them alone.
     std::vector<float> start(tile_cells);
     corner_radii(lattice, exists, true, std::vector<std::uint8_t>(tile_cells / 2, 0), start);
-    const Saturation s{tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
     const TileLayout& layout = tile_layout();
+    const Saturation s{layout, tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
     for (unsigned first = tile_cells / 4; first > 0; first >>= 1) {
         for (unsigned i = first; i < 2 * first; ++i) {
             if (layout.split_neighbor[i] == 0) continue;
@@ -325,14 +326,14 @@ void interpolate_undulations(LocationCode root, int depth, std::span<GeoidUndula
 void own_height_range(Tile& tile, std::span<const std::uint8_t> exists) {
     const TileLayout& layout = tile_layout();
     const auto [least, most] = std::minmax_element(tile.height.begin(), tile.height.begin() + 3);
-    tile.min_height = *least;
-    tile.max_height = *most;
+    float low = *least, high = *most;
     for (std::size_t i = 1; i < exists.size(); ++i) {
-        if (!exists[i]) continue;
-        const float h = tile.height[layout.split_vertex[i]];
-        tile.min_height = std::min(tile.min_height, h);
-        tile.max_height = std::max(tile.max_height, h);
+        const float h = exists[i] ? tile.height[layout.split_vertex[i]] : low;
+        low = std::min(low, h);
+        high = std::max(high, h);
     }
+    tile.min_height = low;
+    tile.max_height = high;
 }
 
 std::vector<std::uint8_t> encode_tile(const BakedTile& baked, const TileScale& scale) {

@@ -10,29 +10,29 @@ namespace {
 
 class EglNative : public NativeContext {
   public:
-    EglNative(std::unique_ptr<EglDisplay> display, EGLContext context, EGLSurface surface)
+    EglNative(EglDisplay display, EGLContext context, EGLSurface surface)
         : display_(std::move(display)), context_(context), surface_(surface) {}
     ~EglNative() override {
-        const Egl& egl = display_->egl();
-        egl.destroy_context(display_->get(), context_);
-        if (surface_ != EGL_NO_SURFACE) egl.destroy_surface(display_->get(), surface_);
+        const Egl& egl = display_.egl();
+        egl.destroy_context(display_.get(), context_);
+        if (surface_ != EGL_NO_SURFACE) egl.destroy_surface(display_.get(), surface_);
     }
 
     std::string make_current() override {
-        const Egl& egl = display_->egl();
+        const Egl& egl = display_.egl();
         egl.bind_api(EGL_OPENGL_API);
-        if (egl.make_current(display_->get(), surface_, surface_, context_) != EGL_FALSE) return {};
+        if (egl.make_current(display_.get(), surface_, surface_, context_) != EGL_FALSE) return {};
         return egl.failure("eglMakeCurrent");
     }
     void release() override {
-        const Egl& egl = display_->egl();
+        const Egl& egl = display_.egl();
         egl.bind_api(EGL_OPENGL_API);  // what is released is the context of the bound API, and the default is OpenGL ES
-        egl.make_current(display_->get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        egl.make_current(display_.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
-    Resolver resolver() const override { return display_->egl().get_proc_address; }
+    Resolver resolver() const override { return display_.egl().get_proc_address; }
 
   private:
-    std::unique_ptr<EglDisplay> display_;
+    EglDisplay display_;
     EGLContext context_;
     EGLSurface surface_;
 };
@@ -56,7 +56,7 @@ bool choose_config(const EglDisplay& display, bool pbuffer_needed, EGLConfig& co
 Attempt open_on(std::shared_ptr<const Egl> egl, EGLenum platform, EGLDeviceEXT device, bool debug) {
     Attempt attempt;
     auto display = EglDisplay::open(std::move(egl), platform, device, attempt.reason);
-    if (display == nullptr) return attempt;
+    if (!display) return attempt;
     const Egl& functions = display->egl();
     if (functions.bind_api(EGL_OPENGL_API) == EGL_FALSE) {
         attempt.reason = functions.failure("eglBindAPI(EGL_OPENGL_API)");
@@ -85,7 +85,7 @@ Attempt open_on(std::shared_ptr<const Egl> egl, EGLenum platform, EGLDeviceEXT d
         surface = functions.create_pbuffer_surface(display->get(), config, size);
         if (surface == EGL_NO_SURFACE) attempt.reason = functions.failure("eglCreatePbufferSurface");
     }
-    auto native = std::make_unique<EglNative>(std::move(display), context, surface);
+    auto native = std::make_unique<EglNative>(*std::move(display), context, surface);
     if (attempt.reason.empty()) attempt.context = std::move(native);
     return attempt;
 }

@@ -3,8 +3,6 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
-#include <mutex>
 #include <utility>
 
 #include "render/gl/library.h"
@@ -12,21 +10,11 @@
 namespace render {
 namespace {
 
-struct DisplayUsers {
-    std::mutex mutex;
-    std::map<EGLDisplay, int> count;
-};
-
-DisplayUsers& display_users() {
-    static DisplayUsers& users = *new DisplayUsers;  // never destroyed: a context may live in a static variable
-    return users;
-}
-
 bool load_core(Egl& egl, const Library& library) {
     return library.load(egl.get_proc_address, "eglGetProcAddress") &&
            library.load(egl.query_string, "eglQueryString") && library.load(egl.initialize, "eglInitialize") &&
-           library.load(egl.terminate, "eglTerminate") && library.load(egl.bind_api, "eglBindAPI") &&
-           library.load(egl.choose_config, "eglChooseConfig") && library.load(egl.create_context, "eglCreateContext") &&
+           library.load(egl.bind_api, "eglBindAPI") && library.load(egl.choose_config, "eglChooseConfig") &&
+           library.load(egl.create_context, "eglCreateContext") &&
            library.load(egl.destroy_context, "eglDestroyContext") &&
            library.load(egl.create_pbuffer_surface, "eglCreatePbufferSurface") &&
            library.load(egl.destroy_surface, "eglDestroySurface") && library.load(egl.make_current, "eglMakeCurrent") &&
@@ -61,7 +49,7 @@ std::shared_ptr<const Egl> Egl::load(std::string& reason) {
         if (has_extension(list, "EGL_EXT_device_query") || has_extension(list, "EGL_EXT_device_base"))
             load_extension(egl->query_device_string, *egl, "eglQueryDeviceStringEXT");
         if (has_extension(list, "EGL_EXT_platform_base") && egl->get_platform_display != nullptr) return egl;
-        reason = library.name + " lacks EGL_EXT_platform_base";
+        reason = library.name + " lacks EGL_EXT_platform_base: it is too old, or no driver is installed";
     }
     return nullptr;
 }
@@ -101,30 +89,19 @@ bool has_extension(const char* list, std::string_view extension) {
     return false;
 }
 
-std::unique_ptr<EglDisplay> EglDisplay::open(std::shared_ptr<const Egl> egl, EGLenum platform, EGLDeviceEXT device,
-                                             std::string& reason) {
-    DisplayUsers& users = display_users();
-    const std::scoped_lock lock(users.mutex);
+std::optional<EglDisplay> EglDisplay::open(std::shared_ptr<const Egl> egl, EGLenum platform, EGLDeviceEXT device,
+                                           std::string& reason) {
     const EGLDisplay display = egl->get_platform_display(platform, device, nullptr);
     if (display == EGL_NO_DISPLAY) {
         reason = egl->failure("eglGetPlatformDisplayEXT");
         if (reason.ends_with("EGL_SUCCESS")) reason = "no EGL driver serves this platform";
-        return nullptr;
+        return std::nullopt;
     }
     if (egl->initialize(display, nullptr, nullptr) == EGL_FALSE) {
         reason = egl->failure("eglInitialize");
-        return nullptr;
+        return std::nullopt;
     }
-    ++users.count[display];
-    return std::unique_ptr<EglDisplay>(new EglDisplay(std::move(egl), display));
-}
-
-EglDisplay::~EglDisplay() {
-    DisplayUsers& users = display_users();
-    const std::scoped_lock lock(users.mutex);
-    if (--users.count[display_] > 0) return;
-    users.count.erase(display_);
-    egl_->terminate(display_);
+    return EglDisplay(std::move(egl), display);
 }
 
 bool EglDisplay::has(std::string_view extension) const {

@@ -1,11 +1,12 @@
 #pragma once
-// libEGL's functions, and displays that count their users.
+// libEGL's functions and displays.
 
 #define EGL_NO_PLATFORM_SPECIFIC_TYPES 1  // no X11 headers
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,6 @@ struct Egl {
     PFNEGLGETPROCADDRESSPROC get_proc_address = nullptr;
     PFNEGLQUERYSTRINGPROC query_string = nullptr;
     PFNEGLINITIALIZEPROC initialize = nullptr;
-    PFNEGLTERMINATEPROC terminate = nullptr;
     PFNEGLBINDAPIPROC bind_api = nullptr;
     PFNEGLCHOOSECONFIGPROC choose_config = nullptr;
     PFNEGLCREATECONTEXTPROC create_context = nullptr;
@@ -42,16 +42,15 @@ struct Egl {
 /// Does a list of extensions, separated by blanks, hold this one?
 bool has_extension(const char* list, std::string_view extension);
 
-/// An initialized display. Every request for the same platform and device gives the same EGLDisplay, and eglTerminate
-/// ends it for all, so users are counted over the whole process. Thread-safe.
+/// An initialized display of libEGL. It is never terminated: every request for the same platform and device gives the
+/// same EGLDisplay to the whole process, so ending it would end the contexts of others, and Mesa would unload the
+/// driver, leak a little and load it again for the next context (5 to 20 ms).
 class EglDisplay {
   public:
-    /// Null with the reason if there is no such display. `device` is null for the surfaceless platform.
-    static std::unique_ptr<EglDisplay> open(std::shared_ptr<const Egl> egl, EGLenum platform, EGLDeviceEXT device,
-                                            std::string& reason);
-    EglDisplay(const EglDisplay&) = delete;
-    EglDisplay& operator=(const EglDisplay&) = delete;
-    ~EglDisplay();
+    /// Nothing, and the reason, if there is no such display. `device` is null for the surfaceless platform.
+    /// Thread-safe.
+    static std::optional<EglDisplay> open(std::shared_ptr<const Egl> egl, EGLenum platform, EGLDeviceEXT device,
+                                          std::string& reason);
 
     const Egl& egl() const noexcept { return *egl_; }
     EGLDisplay get() const noexcept { return display_; }

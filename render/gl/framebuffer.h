@@ -19,6 +19,7 @@ void set_reversed_depth();
 class Framebuffer {
   public:
     struct Options {
+        /// sRGB formats are written linearly unless GL_FRAMEBUFFER_SRGB is enabled.
         GLenum color_format = GL_RGBA8;  ///< GL_RGBA8, GL_SRGB8_ALPHA8, GL_RGBA16F, GL_RGBA32F, ...
         int samples = 1;                 ///< 1..Limits::samples
         bool depth = true;
@@ -40,7 +41,8 @@ class Framebuffer {
     /// Clears colour, and depth to 0 (the far end of reversed depth). Does not depend on any state but the scissor and
     /// the write masks.
     void clear(float red, float green, float blue, float alpha) const;
-    /// Averages the samples into color() and takes one of them into depth(). Nothing to do for one sample.
+    /// Averages the samples into color() and takes one of them into depth(). Nothing to do for one sample. The
+    /// scissor test, if enabled, limits it.
     void resolve() const;
 
     /// The picture as a texture, after resolve().

@@ -91,7 +91,9 @@ Air air_along(AirRay ray, float distance) {
     // rgb: mean source function (Chandrasekhar's J) scaled; a: log of the mean extinction in green, per 1000 km.
     float depth = exp(texel.w) * length_in_air * 1.0e-6f;
     air.transmittance = exp(-depth * ray.ratio);
-    air.in_scatter = (vec3(1.0f) - air.transmittance) * vec3(texel) * sky_ratio_below.w;
+    // The night's own glow keeps the limb and the sky from pure black.
+    vec3 source = vec3(texel) * sky_ratio_below.w + vec3(0.5f, 0.8f, 1.1f) * sky_exposure.z;
+    air.in_scatter = (vec3(1.0f) - air.transmittance) * source;
     return air;
 }
 

@@ -9,10 +9,14 @@ vec3 filmic(vec3 radiance) {
     return clamp(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), vec3(0.0f), vec3(1.0f));
 }
 
-/// IEC 61966-2-1. @param light 0..1
+/// IEC 61966-2-1 to a quarter of an 8-bit step, by square roots alone (after I. Taylor): a third of the cost of powers on
+/// a software renderer. @param light 0..1
 vec3 srgb_from_linear(vec3 light) {
     vec3 low = light * 12.92f;
-    vec3 high = 1.055f * pow(max(light, vec3(1.0e-6f)), vec3(1.0f / 2.4f)) - vec3(0.055f);
+    vec3 s1 = sqrt(light);
+    vec3 s2 = sqrt(s1);
+    vec3 s3 = sqrt(s2);
+    vec3 high = 0.662002687f * s1 + 0.684122060f * s2 - 0.323583601f * s3 - 0.0225411470f * light;
     return mix(high, low, vec3(lessThan(light, vec3(0.0031308f))));
 }
 

@@ -60,7 +60,8 @@ class AirProfile {
 /// fine near the horizon. The same map as light_at() in atmosphere.glsl.
 inline double sun_coordinate(double cosine, double dip) {
     const double m = cosine + dip;
-    return m > 0 ? 0.25 + 0.75 * std::sqrt(std::min(m / (1 + dip), 1.0)) : 0.25 - 0.25 * std::sqrt(std::min(-m / 0.4, 1.0));
+    return m > 0 ? 0.25 + 0.75 * std::sqrt(std::min(m / (1 + dip), 1.0))
+                 : 0.25 - 0.25 * std::sqrt(std::min(-m / 0.4, 1.0));
 }
 inline double sun_cosine(double x, double dip) {
     const double m = x > 0.25 ? (1 + dip) * std::pow((x - 0.25) / 0.75, 2) : -0.4 * std::pow((0.25 - x) / 0.25, 2);

@@ -9,25 +9,33 @@
 // Model: Rayleigh and Mie scattering with exponential profiles, ozone with a tent profile (Bruneton 2017's values for
 // Earth), one order of scattering exact, all higher ones isotropic (Hillaire, "A Scalable and Production Ready Sky and
 // Atmosphere Rendering Technique", 2020). Channels are narrow bands at 640, 550 and 455 nm,
-// nearer to the primaries of sRGB than the usual 680 and 440: haze is blue over sand, not violet. No refraction: the ground
-// sphere lies 500 m below the ellipsoid (below the Dead Sea, and 0.7 degrees of dip at the sea, close to the 0.57
-// degrees that refraction lifts the sun), so terrain always covers its horizon.
+// nearer to the primaries of sRGB than the usual 680 and 440: haze is blue over sand, not violet. No refraction: the
+// ground sphere lies 500 m below the ellipsoid (below the Dead Sea, and 0.7 degrees of dip at the sea, close to the
+// 0.57 degrees that refraction lifts the sun), so terrain always covers its horizon.
 //
 // Textures and uniforms of render/shaders/atmosphere.glsl, surface.glsl, sky.frag.glsl and stars.vert.glsl:
 //
 //   unit  name             from                          format        filter and wrap
-//   0     air_table        ViewTable::air                RGBA16F 3-D   linear, clamp on all axes, no mips
-//   1     sun_light_table  AtmosphereTables::sun_light   RGBA16F 2-D   linear, clamp, no mips
-//   2     sky_light_table  AtmosphereTables::sky_light   RGBA16F 2-D   linear, clamp, no mips
-//   3     noise_table      make_noise_volume             RGBA8 3-D     trilinear with mips, repeat on all axes
+//   0     air_table        ViewTable::air                RGBA32F 3-D   linear, clamp on all axes, no mips
+//   1     sun_light_table  AtmosphereTables::sun_light   RGBA32F 2-D   linear, clamp, no mips
+//   2     sky_light_table  AtmosphereTables::sky_light   RGBA32F 2-D   linear, clamp, no mips
+//   3     noise_table      make_noise_levels             RGBA8 3-D     trilinear with mips, repeat on all axes
 //   uniform block SkyBlock at binding 1, std140: ViewTable::uniforms (SkyUniforms), byte for byte
+//
+// (RGBA16F holds every table too, and is as fast; floats upload without a conversion. Not used from afar: 3.)
+// A fragment of terrain fills SurfaceInput and writes
+//     display_from_radiance(aerial(surface_radiance(s), s.view), gl_FragCoord.xy + sky_picture.xy)
+// with s.footprint = length(s.view) * sky_picture.w; define FROM_AFAR when needs_close_up() says no. Set sky_picture
+// for each part of a picture; the wind (sky_sunlight.w, m/s), night lights (sky_exposure.y) and the imagery's texel
+// (sky_detail.w, m) may be changed too.
 //
 // The air table, (azimuth 64) x (elevation 96 below + 64 above the horizon) x (depth 16). Texel: rgb the mean source
 // function J = in-scattered radiance / (1 - T) times 64, a the natural logarithm of the mean extinction in
-// green per 1000 km (the air thins exponentially, and so is its logarithm what interpolates), both from where the ray enters the air to the depth of the slice. Means and not sums: they vary slowly, so few texels are enough and
-// near terrain is right to first order. T = exp(-ratio * depth_green) with one fitted ratio a
-// channel, view and half of the table: wrong by at most 0.1 on the way to the ground, and by more only where both are
-// small or the ray grazes the ozone layer (stars and sun at the limb).
+// green per 1000 km (the air thins exponentially, and so is its logarithm what interpolates), both from where the ray
+// enters the air to the depth of the slice. Means and not sums: they vary slowly, so few texels are enough and near
+// terrain is right to first order. T = exp(-ratio * depth_green) with one fitted ratio a channel, view and half of the
+// table: wrong by at most 0.1 on the way to the ground, and by more only where both are small or the ray grazes the
+// ozone layer (stars and sun at the limb).
 //   azimuth    x = sin(azimuth from the sun / 2); the table is symmetric
 //   elevation  below: x = sqrt(1 - sin(i/2) sqrt 2), i the angle of incidence at the ground; rows run horizon last
 //              above: x = sqrt(1 - c/c_h), c the chord 2 sin(zenith angle / 2), c_h that of the horizon; from outside
@@ -45,17 +53,17 @@ namespace render {
 struct Atmosphere {
     double equatorial_radius = 6378137.0;
     double polar_radius = 6356752.314245179;
-    double depth_below = 500.0;    ///< the ground sphere lies this far below the ellipsoid
-    double thickness = 100.0e3;    ///< the air ends this far above the ground sphere
+    double depth_below = 500.0;  ///< the ground sphere lies this far below the ellipsoid
+    double thickness = 100.0e3;  ///< the air ends this far above the ground sphere
     glm::dvec3 rayleigh{7.39e-6, 13.558e-6, 28.9e-6};
     double rayleigh_scale_height = 8000.0;
     double mie_scattering = 3.996e-6;
     double mie_extinction = 4.44e-6;
     double mie_scale_height = 1200.0;
-    double mie_asymmetry = 0.8;                       ///< g of the Cornette-Shanks phase function, [0, 1)
-    glm::dvec3 ozone{1.6e-6, 1.881e-6, 0.15e-6};   ///< at its peak, 25 km up, falling to 0 over 15 km
-    double ground_albedo = 0.15;                      ///< for light that comes back up, [0, 1]
-    double sun_angular_radius = 0.004654;             ///< rad, mean over the year
+    double mie_asymmetry = 0.8;                   ///< g of the Cornette-Shanks phase function, [0, 1)
+    glm::dvec3 ozone{1.6e-6, 1.881e-6, 0.15e-6};  ///< at its peak, 25 km up, falling to 0 over 15 km
+    double ground_albedo = 0.15;                  ///< for light that comes back up, [0, 1]
+    double sun_angular_radius = 0.004654;         ///< rad, mean over the year
 
     static Atmosphere earth() { return {}; }
     /// A planet without air (Moon): every coefficient 0, with shadows as before.
@@ -121,11 +129,22 @@ ViewTable make_view_table(const AtmosphereTables& tables, const glm::dvec3& eye,
 /// eye in the air falls. Depends on nothing but its arguments.
 float exposure_for(const AtmosphereTables& tables, const glm::dvec3& eye, const glm::dvec3& sun);
 
-/// Unit vector to the sun in sphere space, and other maps between ecef and the tables.
+/// Whether some pixel of a picture can show ground finer than the imagery: if not, the shaders may be built with
+/// FROM_AFAR defined and give the same picture.
+/// @param height least distance from the eye to the ground, m   @param pixel_angle of the picture's middle, rad
+inline bool needs_close_up(const SkyUniforms& uniforms, double height, double pixel_angle) {
+    return height * pixel_angle < 0.6 * double(uniforms.sky_detail.w);
+}
+
+/// ecef to the space of the tables: z stretched by a/b.
 glm::dvec3 sphere_from_ecef(const Atmosphere& air, const glm::dvec3& v);
 
-/// RGBA8 noise, side^3 texels, x fastest, that repeats: rgb the gradient (0.5 + 0.5 g), a the value; five octaves.
-/// Same bytes everywhere. @param side a power of two, 16..128
+/// RGBA8 noise that repeats, side^3 texels, x fastest: rgb the gradient (0.5 + 0.5 g), a the value; several octaves.
+/// About 50 ms for 64: made once and kept.
+/// @param side a power of two, 16..128
 std::vector<std::uint8_t> make_noise_volume(int side = 64);
+
+/// The same with its mip chain: levels from the finest down to 1 texel, each the mean of eight of the one before.
+std::vector<std::vector<std::uint8_t>> make_noise_levels(int side = 64);
 
 }  // namespace render

@@ -74,8 +74,9 @@ class Picture {
     Picture(const EquirectangularImage& image, Encoding encoding) : image_(image), transfer_(encoding) {}
 
     /// Mean over the box of texels around (cx, cy), fractions counted; columns wrap, rows clamp. Boxes are at least one
-    /// texel a side, which makes this the linear filter where the cube is finer, and at most one turn wide. The boxes of
-    /// a whole cube cover the picture about twice, poles included: a box is as many times wider as its row is shorter.
+    /// texel a side, which makes this the linear filter where the cube is finer, and at most one turn wide. The boxes
+    /// of a whole cube cover the picture about twice, poles included: a box is as many times wider as its row is
+    /// shorter.
     vec4 mean(double cx, double cy, double across, double down) const {
         across = std::clamp(across, 1.0, static_cast<double>(std::max(image_.width, 1)));
         down = std::clamp(down, 1.0, static_cast<double>(std::max(image_.height, 1)));
@@ -83,7 +84,8 @@ class Picture {
         vec4 sum(0);
         for (int y = static_cast<int>(std::floor(top)); y < bottom; ++y) {
             const double w = std::min(bottom, y + 1.0) - std::max(top, static_cast<double>(y));
-            sum += static_cast<float>(w) * row_sum(std::clamp(y, 0, image_.height - 1), cx - across / 2, cx + across / 2);
+            sum +=
+                static_cast<float>(w) * row_sum(std::clamp(y, 0, image_.height - 1), cx - across / 2, cx + across / 2);
         }
         return sum / static_cast<float>(down * across);
     }
@@ -138,8 +140,8 @@ void check_image(const EquirectangularImage& image) {
                                              static_cast<std::size_t>(image.channels))
         throw planet::Error(planet::Fault::bad_data, "picture",
                             std::to_string(image.width) + "x" + std::to_string(image.height) + " with " +
-                                std::to_string(image.channels) + " channels in " +
-                                std::to_string(image.texels.size()) + " bytes",
+                                std::to_string(image.channels) + " channels in " + std::to_string(image.texels.size()) +
+                                " bytes",
                             "1x1 to 65535x65535, 1 to 4 channels of 8 bits, complete");
 }
 
@@ -157,12 +159,18 @@ vec4 area_mean(const Picture& picture, const EquirectangularImage& image, const 
 dvec3 cube_normal(int face, double s, double t) {
     const double u = 2 * s - 1, v = 2 * t - 1;
     switch (face) {
-        case 0: return glm::normalize(dvec3(1, -v, -u));
-        case 1: return glm::normalize(dvec3(-1, -v, u));
-        case 2: return glm::normalize(dvec3(u, 1, v));
-        case 3: return glm::normalize(dvec3(u, -1, -v));
-        case 4: return glm::normalize(dvec3(u, -v, 1));
-        default: return glm::normalize(dvec3(-u, -v, -1));
+        case 0:
+            return glm::normalize(dvec3(1, -v, -u));
+        case 1:
+            return glm::normalize(dvec3(-1, -v, u));
+        case 2:
+            return glm::normalize(dvec3(u, 1, v));
+        case 3:
+            return glm::normalize(dvec3(u, -1, -v));
+        case 4:
+            return glm::normalize(dvec3(u, -v, 1));
+        default:
+            return glm::normalize(dvec3(-u, -v, -1));
     }
 }
 
@@ -190,8 +198,8 @@ CubeMap cube_from_equirectangular(const EquirectangularImage& image, int side, E
     while (cube.levels.back().side > 1)
         cube.levels.push_back(half(cube.levels.back(), threads, [&](auto* a, auto* b, auto* c, auto* d, auto* out) {
             for (int k = 0; k < 3; ++k)
-                out[k] = transfer.byte((transfer.light(a[k]) + transfer.light(b[k]) + transfer.light(c[k]) +
-                                        transfer.light(d[k])) / 4);
+                out[k] = transfer.byte(
+                    (transfer.light(a[k]) + transfer.light(b[k]) + transfer.light(c[k]) + transfer.light(d[k])) / 4);
             out[3] = static_cast<std::uint8_t>((a[3] + b[3] + c[3] + d[3] + 2) / 4);
         }));
     return cube;
@@ -204,6 +212,13 @@ void set_alpha(CubeMap& into, const CubeMap& from) {
         for (std::size_t i = 0; i < into.levels[k].texels.size(); i += 4)
             into.levels[k].texels[i + 3] = from.levels[k].texels[i];
     }
+}
+
+void set_night_alpha(CubeMap& relief, const CubeMap& lights) {
+    set_alpha(relief, lights);
+    for (CubeLevel& level : relief.levels)
+        for (std::size_t i = 3; i < level.texels.size(); i += 4)
+            level.texels[i] = static_cast<std::uint8_t>((level.texels[i] * 127 + 127) / 255);
 }
 
 std::vector<std::uint8_t> lights_from_night_picture(std::span<const std::uint8_t> rgb) {
@@ -247,7 +262,8 @@ void relief_row(const planet::ElevationField& field, int side, int row, double r
         const bool known = std::isfinite(da) && std::isfinite(db);
         const dvec3 off = known ? glm::normalize(up - da * a - db * b) - up : dvec3(0);
         for (int c = 0; c < 3; ++c)
-            out[c] = static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lround(std::clamp(2 * off[c], -1.0, 1.0) * 127)));
+            out[c] = static_cast<std::uint8_t>(
+                static_cast<std::int8_t>(std::lround(std::clamp(2 * off[c], -1.0, 1.0) * 127)));
         out[3] = 127;
     }
 }

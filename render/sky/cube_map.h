@@ -41,14 +41,18 @@ enum class Encoding {
     linear,  ///< every channel as it is
 };
 
-/// A cube map of a picture. Each texel averages the picture over its own area, as wide in longitude as it is there: near
-/// the poles over whole rows. Grey fills rgb; a missing alpha is 255. Levels average four texels of the one before, in
-/// light. Throws planet::Error (bad_data) if sizes do not fit. Same bytes for any number of threads.
+/// A cube map of a picture. Each texel averages the picture over its own area, as wide in longitude as it is there:
+/// near the poles over whole rows. Grey fills rgb; a missing alpha is 255. Levels average four texels of the one
+/// before, in light. Throws planet::Error (bad_data) if sizes do not fit. Same bytes for any number of threads.
 /// @param side of a face, a power of two; width / 4 keeps the picture's detail   @param threads 1 or more
 CubeMap cube_from_equirectangular(const EquirectangularImage& image, int side, Encoding encoding, unsigned threads = 2);
 
 /// Puts channel 0 of one cube map into the alpha of another of the same size (water fraction beside day colour).
 void set_alpha(CubeMap& into, const CubeMap& from);
+
+/// Puts night lights into the alpha of a relief cube of the same size (SNORM: 0..127), so that one fetch gives both:
+/// night = lamps(texture(relief, normal).a). Channel 0 of `lights` is sRGB, near enough to the square root of light.
+void set_night_alpha(CubeMap& relief, const CubeMap& lights);
 
 /// NASA's "Earth at night" shows lights on a moonlit blue planet. Keeps the lights, in the colour of sodium lamps, as
 /// sRGB bytes; 3 bytes a texel in and out.
@@ -58,7 +62,8 @@ std::vector<std::uint8_t> lights_from_night_picture(std::span<const std::uint8_t
 /// degrees, more than cells of kilometres have; alpha 127. The shader adds half of it to the geodetic normal and
 /// normalizes. Heights are sampled at texel centres and differenced over one texel each way, across
 /// face edges too; where the field has no answer the ground is level. Coarser levels average, so relief fades to level.
-/// @param radius of the planet, m, for slopes   @param sea_floor false: below 0 m the ground is level (the sea's surface)
+/// @param radius of the planet, m, for slopes   @param sea_floor false: below 0 m the ground is level (the sea's
+/// surface)
 CubeMap relief_cube(const planet::ElevationField& field, int side, double radius, bool sea_floor = false,
                     unsigned threads = 2);
 

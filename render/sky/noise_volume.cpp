@@ -25,7 +25,8 @@ float gradient(std::uint32_t h, float x, float y, float z) {
 
 /// Perlin noise at (x, y, z) in cells, of which `mask` + 1 make a period.
 float perlin(float x, float y, float z, std::uint32_t mask, std::uint32_t octave) {
-    const auto ix = static_cast<std::uint32_t>(x), iy = static_cast<std::uint32_t>(y), iz = static_cast<std::uint32_t>(z);
+    const auto ix = static_cast<std::uint32_t>(x), iy = static_cast<std::uint32_t>(y),
+               iz = static_cast<std::uint32_t>(z);
     const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy), fz = z - static_cast<float>(iz);
     const auto fade = [](float t) { return t * t * t * (t * (t * 6 - 15) + 10); };
     const float wx = fade(fx), wy = fade(fy), wz = fade(fz);
@@ -50,8 +51,9 @@ std::vector<float> octaves(std::uint32_t side) {
                 for (std::uint32_t cells = 4; cells < side; cells *= 2, amplitude *= 0.6f) {
                     // Off the lattice, where Perlin noise is 0.
                     const float step = static_cast<float>(cells) / static_cast<float>(side), shift = 0.37f * step;
-                    sum += amplitude * perlin(static_cast<float>(x) * step + shift, static_cast<float>(y) * step + shift,
-                                              static_cast<float>(z) * step + shift, cells - 1, cells);
+                    sum +=
+                        amplitude * perlin(static_cast<float>(x) * step + shift, static_cast<float>(y) * step + shift,
+                                           static_cast<float>(z) * step + shift, cells - 1, cells);
                 }
                 field.push_back(sum);
             }
@@ -60,6 +62,26 @@ std::vector<float> octaves(std::uint32_t side) {
 
 std::uint8_t byte_of(float v) {
     return static_cast<std::uint8_t>(std::lround(std::fmin(std::fmax(127.5f + 127.5f * v, 0.0f), 255.0f)));
+}
+
+/// The next coarser level, m texels a side.
+std::vector<std::uint8_t> half(const std::vector<std::uint8_t>& fine, std::uint32_t m) {
+    std::vector<std::uint8_t> out;
+    out.reserve(std::size_t{m} * m * m * 4);
+    for (std::uint32_t z = 0; z < m; ++z)
+        for (std::uint32_t y = 0; y < m; ++y)
+            for (std::uint32_t x = 0; x < m; ++x)
+                for (std::size_t c = 0; c < 4; ++c) {
+                    unsigned sum = 4;
+                    for (std::uint32_t k = 0; k < 8; ++k) {
+                        const std::size_t at =
+                            (std::size_t{2 * z + (k >> 2)} * (2 * m) + (2 * y + (k >> 1 & 1))) * (2 * m) +
+                            (2 * x + (k & 1));
+                        sum += fine[at * 4 + c];
+                    }
+                    out.push_back(static_cast<std::uint8_t>(sum / 8));
+                }
+    return out;
 }
 
 }  // namespace
@@ -82,6 +104,12 @@ std::vector<std::uint8_t> make_noise_volume(int side) {
                 bytes.push_back(byte_of(0.9f * value(x, y, z)));
             }
     return bytes;
+}
+
+std::vector<std::vector<std::uint8_t>> make_noise_levels(int side) {
+    std::vector<std::vector<std::uint8_t>> levels{make_noise_volume(side)};
+    for (auto m = static_cast<std::uint32_t>(side) / 2; m > 0; m /= 2) levels.push_back(half(levels.back(), m));
+    return levels;
 }
 
 }  // namespace render

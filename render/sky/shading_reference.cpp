@@ -44,12 +44,12 @@ vec4 texture(const RepeatedVolume& v, const vec3& at) {
     vec4 sum(0);
     for (int k = 0; k < 8; ++k) {
         const int x = k & 1 ? p[0].b : p[0].a, y = k & 2 ? p[1].b : p[1].a, z = k & 4 ? p[2].b : p[2].a;
-        const float w =
-            (k & 1 ? p[0].w : 1 - p[0].w) * (k & 2 ? p[1].w : 1 - p[1].w) * (k & 4 ? p[2].w : 1 - p[2].w);
-        const std::uint8_t* t = v.texels + 4 * ((static_cast<std::size_t>(z) * static_cast<std::size_t>(v.side) +
-                                                 static_cast<std::size_t>(y)) *
-                                                    static_cast<std::size_t>(v.side) +
-                                                static_cast<std::size_t>(x));
+        const float w = (k & 1 ? p[0].w : 1 - p[0].w) * (k & 2 ? p[1].w : 1 - p[1].w) * (k & 4 ? p[2].w : 1 - p[2].w);
+        const std::uint8_t* t =
+            v.texels +
+            4 * ((static_cast<std::size_t>(z) * static_cast<std::size_t>(v.side) + static_cast<std::size_t>(y)) *
+                     static_cast<std::size_t>(v.side) +
+                 static_cast<std::size_t>(x));
         sum += w * vec4(t[0], t[1], t[2], t[3]);
     }
     return sum / 255.0f;

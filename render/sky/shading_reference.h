@@ -34,7 +34,9 @@ struct Shading : SkyUniforms {
     RepeatedVolume noise_table;
 
     Shading(const SkyUniforms& uniforms, const AtmosphereTables& tables, const ViewTable& view)
-        : SkyUniforms(uniforms), air_table{&view.air}, sun_light_table{&tables.sun_light},
+        : SkyUniforms(uniforms),
+          air_table{&view.air},
+          sun_light_table{&tables.sun_light},
           sky_light_table{&tables.sky_light} {}
 
 #include "render/shaders/atmosphere.glsl"

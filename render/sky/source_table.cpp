@@ -77,8 +77,7 @@ class Maker {
             for (int x = 0; x < sun_steps; ++x) {
                 const double mu = sun_cosine(double(x) / (sun_steps - 1), dip);
                 const double part = visible_part(mu + dip, air_.sun_angular_radius);
-                sunlight_.at(x, y) =
-                    part > 0 ? transmittance(profile_, height, std::max(mu, -dip)) * part : dvec3(0);
+                sunlight_.at(x, y) = part > 0 ? transmittance(profile_, height, std::max(mu, -dip)) * part : dvec3(0);
             }
         }
     }

@@ -23,10 +23,10 @@ double smooth(double a, double b, double x) {
 /// The eye among the spheres.
 struct View {
     AirProfile profile;
-    dvec3 up, side;     // sphere space, unit
-    double r, sun_mu;   // the eye's radius; the sun's cosine with up
+    dvec3 up, side;    // sphere space, unit
+    double r, sun_mu;  // the eye's radius; the sun's cosine with up
     bool outside;
-    double chord;       // chord of the angle from the zenith to the horizon
+    double chord;  // chord of the angle from the zenith to the horizon
     double power_below, power_above;
 };
 
@@ -164,8 +164,8 @@ using Azimuths = std::array<Azimuth, air_azimuths>;
 
 Azimuths azimuths_of(const View& v, const Ray& ray, double g) {
     Azimuths all;
-    const double side = std::sqrt(std::max(0.0, 1 - ray.mu * ray.mu)) *
-                        std::sqrt(std::max(0.0, 1 - v.sun_mu * v.sun_mu));
+    const double side =
+        std::sqrt(std::max(0.0, 1 - ray.mu * ray.mu)) * std::sqrt(std::max(0.0, 1 - v.sun_mu * v.sun_mu));
     for (int i = 0; i < air_azimuths; ++i) {
         const double x = double(i) / (air_azimuths - 1), cosine = 1 - 2 * x * x;
         const double nu = std::clamp(ray.mu * v.sun_mu + side * cosine, -1.0, 1.0);
@@ -195,8 +195,8 @@ glm::vec3 scattered(const View& v, const Step& s, const SourceRow& row, double d
 }
 
 /// Writes J and the mean extinction of one slice of a row.
-void write_slice(TableImage& air, int row, int slice, const Azimuths& all, const dvec3& depth_by_ratio, double extinction,
-                 const glm::vec3& sunlight) {
+void write_slice(TableImage& air, int row, int slice, const Azimuths& all, const dvec3& depth_by_ratio,
+                 double extinction, const glm::vec3& sunlight) {
     glm::vec3 scale(0);
     for (int c = 0; c < 3; ++c) {
         const double absorbed = -std::expm1(-depth_by_ratio[c]);
@@ -236,12 +236,11 @@ class RowMaker {
   private:
     /// The limit at no depth: the local source over the local extinction, as of one metre of air.
     void first_slice(const Ray& ray, int row, Azimuths& all) {
-        const double radius =
-            std::sqrt(view_.r * view_.r + ray.enter * ray.enter + 2 * view_.r * ray.mu * ray.enter);
+        const double radius = std::sqrt(view_.r * view_.r + ray.enter * ray.enter + 2 * view_.r * ray.mu * ray.enter);
         const double height = std::max(0.0, radius - view_.profile.ground());
         const AirSample air = view_.profile.at(height);
-        const Step s{ray.enter, radius, height, air.rayleigh, glm::vec3(static_cast<float>(air.mie)),
-                     air.rayleigh + air.mie};
+        const Step s{
+            ray.enter, radius, height, air.rayleigh, glm::vec3(static_cast<float>(air.mie)), air.rayleigh + air.mie};
         blend_row(tables_, height, sources_);
         for (Azimuth& a : all) a.sum = scattered(view_, s, sources_, view_.profile.dip(height), a);
         write_slice(out_, row, 0, all, ratios_.of_row(row) * air.extinction.g, air.extinction.g, sunlight_);

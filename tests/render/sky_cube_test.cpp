@@ -60,6 +60,7 @@ TEST(SkyCube, AveragesLightAndNotBytes) {
 }
 
 TEST(SkyCube, AlphaThreadsAndOddSizes) {
+    const std::vector<std::uint8_t> white{255, 255, 255};
     const std::vector<std::uint8_t> grey{10, 20, 30, 40, 50, 60}, one{77, 78, 79};
     const CubeMap a = cube_from_equirectangular({3, 2, 1, grey}, 16, Encoding::srgb, 1);
     const CubeMap b = cube_from_equirectangular({3, 2, 1, grey}, 16, Encoding::srgb, 5);
@@ -69,6 +70,8 @@ TEST(SkyCube, AlphaThreadsAndOddSizes) {
     set_alpha(single, a);
     EXPECT_EQ(single.levels[0].texels[3], a.levels[0].texels[0]);
     EXPECT_EQ(single.levels[0].texels[0], 77);
+    set_night_alpha(single, cube_from_equirectangular({1, 1, 3, white}, 16, Encoding::linear));
+    EXPECT_EQ(single.levels[0].texels[3], 127);
     EXPECT_THROW(cube_from_equirectangular({3, 2, 3, grey}, 16, Encoding::srgb), planet::Error);
     EXPECT_THROW(cube_from_equirectangular({0, 0, 1, {}}, 16, Encoding::srgb), planet::Error);
     EXPECT_THROW(cube_from_equirectangular({3, 2, 1, grey}, 17, Encoding::srgb), planet::Error);
@@ -107,7 +110,9 @@ TEST(SkyCube, ReliefIsTheSlopeOfTheField) {
             const dvec3 n = cube_normal(row / 64, (x + 0.5) / 64, (row % 64 + 0.5) / 64);
             const auto at = [&](const CubeMap& c) {
                 const auto* t = &c.levels[0].texels[static_cast<std::size_t>(row * 64 + x) * 4];
-                return dvec3(static_cast<std::int8_t>(t[0]), static_cast<std::int8_t>(t[1]), static_cast<std::int8_t>(t[2])) / 254.0;
+                return dvec3(static_cast<std::int8_t>(t[0]), static_cast<std::int8_t>(t[1]),
+                             static_cast<std::int8_t>(t[2])) /
+                       254.0;
             };
             const dvec3 slope = (Wave::along - glm::dot(Wave::along, n) * n) * (Wave::amplitude / Wave::radius);
             if (n.x > 0.95) {

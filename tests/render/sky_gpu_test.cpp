@@ -63,7 +63,7 @@ TEST(SkyGpu, SameNumbersAsOnTheProcessor) {
         return name == "probe.frag.glsl" ? std::optional(probe) : find_shader_source(name);
     };
     const Program program = Program::link({"full_screen.vert.glsl", "probe.frag.glsl"}, options);
-    const std::vector<std::uint8_t> noise = make_noise_volume(16);
+    const auto noise = make_noise_volume(16);
     Texture volume = Texture::make_3d(GL_RGBA8, 16, 16, 16);
     volume.upload(0, bytes_of(noise));
     for (const double h : {2.0, 12e3, 4e5, 3e7}) {
@@ -76,12 +76,14 @@ TEST(SkyGpu, SameNumbersAsOnTheProcessor) {
             if (h > 1e5) d = glm::normalize(d * 6.4e6f - vec3(0, 6378137.0 + h, 0));
             const float far = static_cast<float>(std::pow(10, 4 + 3 * std::abs(uniform(random))));
             inputs.emplace_back(d, far);
-            inputs.emplace_back(glm::normalize(vec3(uniform(random), uniform(random), uniform(random))), std::abs(uniform(random)));
+            inputs.emplace_back(glm::normalize(vec3(uniform(random), uniform(random), uniform(random))),
+                                std::abs(uniform(random)));
         }
         Texture in = Texture::make_2d(GL_RGBA32F, 2, n);
         in.upload(0, bytes_of(inputs));
         in.set_sampling({GL_NEAREST, GL_NEAREST});
-        const Texture air = texture_of(view.air), sun = texture_of(tables.sun_light), sky = texture_of(tables.sky_light);
+        const Texture air = texture_of(view.air), sun = texture_of(tables.sun_light),
+                      sky = texture_of(tables.sky_light);
         const Buffer block(std::as_bytes(std::span(&view.uniforms, 1)));
         block.bind_base(GL_UNIFORM_BUFFER, 1);
         air.bind(0), sun.bind(1), sky.bind(2), volume.bind(3), in.bind(7);
@@ -95,7 +97,8 @@ TEST(SkyGpu, SameNumbersAsOnTheProcessor) {
         const vec3 through = cpu.sun_through_air();
         int worse[3] = {};
         for (int i = 0; i < n; ++i) {
-            const glm::vec4 a = inputs[static_cast<std::size_t>(2 * i)], b = inputs[static_cast<std::size_t>(2 * i + 1)];
+            const glm::vec4 a = inputs[static_cast<std::size_t>(2 * i)],
+                            b = inputs[static_cast<std::size_t>(2 * i + 1)];
             reference::Shading::SurfaceInput s;
             s.view = vec3(a) * a.w;
             s.normal = vec3(b);
@@ -125,12 +128,14 @@ TEST(SkyGpu, CubeMapsAreTurnedAsOpenGlHasThem) {
     std::vector<std::uint8_t> picture;
     for (int y = 0; y < 128; ++y)
         for (int x = 0; x < 256; ++x) {
-            const dvec3 p = planet::normal_from_geodetic(3.14159265 * (0.5 - (y + 0.5) / 128), 6.2831853 * ((x + 0.5) / 256 - 0.5));
+            const dvec3 p =
+                planet::normal_from_geodetic(3.14159265 * (0.5 - (y + 0.5) / 128), 6.2831853 * ((x + 0.5) / 256 - 0.5));
             for (int c = 0; c < 3; ++c) picture.push_back(static_cast<std::uint8_t>(std::lround(127.5 + 120 * p[c])));
         }
     const CubeMap cube = cube_from_equirectangular({256, 128, 3, picture}, 64, Encoding::linear);
     Texture texture = Texture::make_cube(GL_RGBA8, 64, static_cast<int>(cube.levels.size()));
-    for (std::size_t k = 0; k < cube.levels.size(); ++k) texture.upload(static_cast<int>(k), bytes_of(cube.levels[k].texels));
+    for (std::size_t k = 0; k < cube.levels.size(); ++k)
+        texture.upload(static_cast<int>(k), bytes_of(cube.levels[k].texels));
     ProgramOptions options;
     options.find = [](std::string_view name) -> std::optional<std::string_view> {
         if (name != "cube.frag.glsl") return find_shader_source(name);
