@@ -210,14 +210,6 @@ void TileLattice::set_positions(const Placement& placement, std::span<const floa
         if (!exists[i]) x[layout.split_vertex[i]] = y[layout.split_vertex[i]] = z[layout.split_vertex[i]] = nan;
 }
 
-float certified_deviation(double worst) {
-    return std::nextafter(static_cast<float>(worst + deviation_rounding_m), std::numeric_limits<float>::infinity());
-}
-
-float certified_radius(double radius) {
-    return std::nextafter(static_cast<float>(radius * (1 + 0x1p-20)), std::numeric_limits<float>::infinity());
-}
-
 void own_deviation(const TileLattice& lattice, std::span<float> deviation) {
     const LaneLayout& l = lane_layout(lattice.depth());
     const TileLayout& t = tile_layout();

@@ -12,6 +12,8 @@
 //
 // Everything here is elementwise arithmetic in double without contraction: the same bits for any vector width.
 
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -68,8 +70,15 @@ struct CellPlane {
     }
 };
 
-/// Rounds up to float, with deviation_rounding_m added.
-float certified_deviation(double worst);
+/// The least float above a positive one.
+inline float next_up(float v) {
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(v) + 1);
+}
+
+/// Rounds up to float, with deviation_rounding_m added. @param worst >= 0
+inline float certified_deviation(double worst) {
+    return next_up(static_cast<float>(worst + deviation_rounding_m));
+}
 
 /// The deviation of every cell of the tile over the tile's own vertices, by local index into 2^depth values, metres,
 /// rounded up (certified_deviation). Cells that do not exist get what is meaningless.
@@ -89,7 +98,9 @@ inline double radius_over(const glm::vec3& m, const glm::vec3& m_c, float child_
                  dz = static_cast<double>(m.z) - static_cast<double>(m_c.z);
     return std::sqrt(dx * dx + dy * dy + dz * dz) + static_cast<double>(child_radius);
 }
-/// Rounds a radius up to float, slack of 2^-20 included.
-float certified_radius(double radius);
+/// Rounds a radius up to float, slack of 2^-20 included. @param radius >= 0
+inline float certified_radius(double radius) {
+    return next_up(static_cast<float>(radius * (1 + 0x1p-20)));
+}
 
 }  // namespace planet

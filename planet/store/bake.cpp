@@ -59,8 +59,7 @@ class Bake {
             gather_height_ranges();
         });
         step("resampling", [&] {
-            certify_resampling(field_, placement_, options_.ellipsoid.mean_radius(), tiles_,
-                               [&](double fraction) { tell("resampling", fraction); });
+            certify_resampling(field_, placement_, tiles_, [&](double fraction) { tell("resampling", fraction); });
         });
         step("writing", [&] { write(file); });
         return report_;

@@ -94,7 +94,6 @@ void Saturation::raise(unsigned i) const {
         return;
     }
     if (i >> (depth - 1)) return;
-    const TileLayout& layout = tile_layout();
     const glm::vec3& m = rounded[layout.split_vertex[i]];
     double reach = 0;
     for (unsigned child = 2 * i; child < 2 * i + 2; ++child) {
@@ -147,7 +146,7 @@ float up_the_radii(float radius) {
 
 void settle_inside(std::span<BakedTile> tiles, BakedTile& tile, int level) {
     const TileLayout& layout = tile_layout();
-    const Saturation s{tile.tile.depth, tile.tile.deviation, tile.tile.radius, tile.rounded, tile.exists};
+    const Saturation s{layout, tile.tile.depth, tile.tile.deviation, tile.tile.radius, tile.rounded, tile.exists};
     const unsigned first = 1u << level;
     const bool above_tiles = tile.inner() && level == tile_levels - 1;
     for (unsigned i = first; i < 2 * first; ++i) {

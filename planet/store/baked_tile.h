@@ -37,6 +37,7 @@ std::vector<BakedTile> tie_tiles(const std::vector<PlannedTile>& plan);
 
 /// The records of one tile as they are saturated. Spans are by local index, but `rounded` by vertex index.
 struct Saturation {
+    const TileLayout& layout;
     int depth;
     std::span<float> deviation;  ///< in: each cell's own deviation
     std::span<float> radius;     ///< in: corner_distance() of cells that lack a child diamond, else 0

@@ -115,8 +115,8 @@ void create_tables(SqliteFile& file) {
 
 void write_metadata(SqliteFile& file, const StoreMetadata& m) {
     Entries entries = entries_of(m);
-    entries["checksum"] = checksum_of(entries, m.sources);
-    entries["complete"] = m.complete ? "1" : "0";
+    entries.emplace("checksum", checksum_of(entries, m.sources));
+    entries.emplace("complete", m.complete ? "1" : "0");
     file.run("DELETE FROM metadata; DELETE FROM sources;");
     SqliteStatement entry(file, "INSERT INTO metadata VALUES(?, ?)");
     for (const auto& [key, value] : entries) {

@@ -30,7 +30,7 @@ void SurfaceCursor::start(const glm::dvec3& n) {
     held_[0] = tiles_->tile(face);
     assert(held_[0]);
     path_.clear();
-    path_.push_back({face_corners(face.face()), held_[0].get(), 1, true});
+    path_.push_back({face_corners(face.face()), held_[0].get(), 1, true, false, {}, {}});
     plane_valid_ = false;
 }
 
@@ -62,12 +62,21 @@ void SurfaceCursor::seek(const glm::dvec3& n, int finest_level) {
         Step& step = path_.back();
         if (step.local >> step.tile->depth && !enter_tile_below(step)) break;
         if (!(step.tile->deviation[step.local] > 0)) break;
-        const glm::dvec3 m = split_vertex(step.corners);
-        // Which side of the plane through the planet's centre, m and the apex: left is on child 0's side.
-        const double side = triple(n, m, step.corners.apex);
+        if (!step.has_split) {
+            step.split = split_vertex(step.corners);
+            step.middle = glm::cross(step.split, step.corners.apex);
+            step.has_split = true;
+        }
+        // Left is on child 0's side of the plane in the middle.
+        const double side = glm::dot(n, step.middle);
         const int child = (step.counter_clockwise ? side >= 0 : side <= 0) ? 0 : 1;
-        path_.push_back({child_corners(step.corners, m, child), step.tile,
-                         2 * step.local + static_cast<unsigned>(child), !step.counter_clockwise});
+        path_.push_back({child_corners(step.corners, step.split, child),
+                         step.tile,
+                         2 * step.local + static_cast<unsigned>(child),
+                         !step.counter_clockwise,
+                         false,
+                         {},
+                         {}});
         plane_valid_ = false;
     }
 }

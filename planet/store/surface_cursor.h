@@ -48,6 +48,9 @@ class SurfaceCursor {
         const Tile* tile;
         unsigned local;
         bool counter_clockwise;
+        bool has_split;     // the next two are known
+        glm::dvec3 split;   // the cell's split vertex
+        glm::dvec3 middle;  // normal of the plane through the planet's centre, the split vertex and the apex
     };
 
     bool holds(const Step& step, const glm::dvec3& n) const;

@@ -19,6 +19,7 @@ struct PictureReport {
     double deviation_max_m = 0;      ///< largest certified deviation of a drawn cell
     double pixel_deviation_max = 0;  ///< pixels, certified, over the picture
     double eye_height_m = 0;         ///< above the ellipsoid
+    bool damaged = false;            ///< a tile could not be read, and its parent stood in for it
     std::string crs;                 ///< of what is drawn, e.g. "EPSG:4979"
     std::string vertical_datum;
     std::vector<planet::SourceInfo> sources;

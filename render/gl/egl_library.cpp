@@ -49,7 +49,7 @@ std::shared_ptr<const Egl> Egl::load(std::string& reason) {
         if (has_extension(list, "EGL_EXT_device_query") || has_extension(list, "EGL_EXT_device_base"))
             load_extension(egl->query_device_string, *egl, "eglQueryDeviceStringEXT");
         if (has_extension(list, "EGL_EXT_platform_base") && egl->get_platform_display != nullptr) return egl;
-        reason = library.name + " lacks EGL_EXT_platform_base";
+        reason = library.name + " lacks EGL_EXT_platform_base: it is too old, or no driver is installed";
     }
     return nullptr;
 }

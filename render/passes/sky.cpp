@@ -21,28 +21,9 @@ Texture table_2d(const TableImage& table) {
 
 Texture noise_texture() {
     constexpr int side = 64;
-    std::vector<std::uint8_t> texels = make_noise_volume(side);
     Texture t = Texture::make_3d(GL_RGBA8, side, side, side, mip_levels(side, side, side));
-    t.upload(0, bytes_of(texels));
-    // Means of eight: the driver's own chain would differ between drivers.
-    for (int level = 1, n = side / 2; level < t.levels(); ++level, n /= 2) {
-        std::vector<std::uint8_t> coarse(static_cast<std::size_t>(n) * n * n * 4);
-        const auto at = [&](int x, int y, int z, int c) {
-            return texels[((static_cast<std::size_t>(z) * 2 * n + y) * 2 * n + x) * 4 + static_cast<std::size_t>(c)];
-        };
-        for (int z = 0; z < n; ++z)
-            for (int y = 0; y < n; ++y)
-                for (int x = 0; x < n; ++x)
-                    for (int c = 0; c < 4; ++c) {
-                        int sum = 4;
-                        for (int k = 0; k < 8; ++k)
-                            sum += at(2 * x + (k & 1), 2 * y + (k >> 1 & 1), 2 * z + (k >> 2), c);
-                        coarse[((static_cast<std::size_t>(z) * n + y) * n + x) * 4 + static_cast<std::size_t>(c)] =
-                            static_cast<std::uint8_t>(sum / 8);
-                    }
-        t.upload(level, bytes_of(coarse));
-        texels = std::move(coarse);
-    }
+    const auto levels = make_noise_levels(side);
+    for (int level = 0; level < t.levels(); ++level) t.upload(level, bytes_of(levels[static_cast<std::size_t>(level)]));
     t.set_sampling({.wrap_s = GL_REPEAT, .wrap_t = GL_REPEAT, .wrap_r = GL_REPEAT});
     return t;
 }

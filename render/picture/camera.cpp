@@ -73,14 +73,15 @@ glm::mat4 Camera::ecef_direction_from_clip(const PicturePart& part) const {
     return glm::mat4(glm::dmat4(glm::transpose(view_from_ecef)) * view);
 }
 
-planet::Culling Camera::culling(double occluder_radius) const {
+planet::Culling Camera::culling(const PicturePart& part, double occluder_radius) const {
     const glm::dmat3 ecef_from_view = glm::transpose(view_from_ecef);
-    const double x = 0.5 * width / focal_px, y = 0.5 * height / focal_px;
+    // Slopes of the part's borders: right of x0, left of x1, above y0, below y1, for a view vector at Z = -1.
+    const double x0 = (part.x - 0.5 * width) / focal_px, x1 = (part.x + part.width - 0.5 * width) / focal_px;
+    const double y1 = (0.5 * height - part.y) / focal_px, y0 = (0.5 * height - part.y - part.height) / focal_px;
     planet::Culling c;
     c.eye = eye;
-    c.inward = {
-        ecef_from_view * glm::normalize(glm::dvec3(1, 0, -x)), ecef_from_view * glm::normalize(glm::dvec3(-1, 0, -x)),
-        ecef_from_view * glm::normalize(glm::dvec3(0, 1, -y)), ecef_from_view * glm::normalize(glm::dvec3(0, -1, -y))};
+    c.inward = {glm::dvec3(1, 0, x0), glm::dvec3(-1, 0, -x1), glm::dvec3(0, 1, y0), glm::dvec3(0, -1, -y1)};
+    for (glm::dvec3& n : c.inward) n = ecef_from_view * glm::normalize(n);
     c.occluder_radius = occluder_radius;
     return c;
 }

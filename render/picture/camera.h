@@ -28,8 +28,8 @@ struct Camera {
     glm::mat4 clip_from_ecef(const PicturePart& part) const;
     /// Takes (x, y, 0, 1) of clip space to an ecef direction of any length.
     glm::mat4 ecef_direction_from_clip(const PicturePart& part) const;
-    /// Of the whole picture. @param occluder_radius m, a ball no terrain lets light through
-    planet::Culling culling(double occluder_radius) const;
+    /// What a part cannot show. @param occluder_radius m, a ball no terrain lets light through
+    planet::Culling culling(const PicturePart& part, double occluder_radius) const;
     /// Tangent of the angle between the view axis and a corner.
     double tan_corner() const;
 

@@ -86,10 +86,13 @@ TEST(Segments, DoNotDependOnThreads) {
 TEST(Segments, PatchCoordinatesLeadToTheVertex) {
     const BallTiles tiles(30, 0.001);  // a smooth ellipsoid: the grid position gives the direction back
     Segments segments;
-    segments.build(tiles, view_at(40, -105, 2e4, 200));
-    std::size_t tested = 0;
+    SegmentView view = view_at(40, -105, 2e4, 200);
+    view.finest_patch_level = 20;  // a child tile's corner of the lattice lies above some roots' tiles, below others
+    segments.build(tiles, view);
+    std::size_t tested = 0, above = 0;
     for (const Segment& s : segments.segments()) {
-        EXPECT_EQ(s.patch, diamond(s.root));
+        EXPECT_EQ(s.patch, diamond(s.root.ancestor(std::min(20, s.root.bisection_level()))));
+        above += s.root.bisection_level() > 20;
         const Corners c = corners(s.patch), far = corners(neighbor(s.patch));
         const std::uint32_t end = s.first_index + s.index_count;
         for (std::uint32_t i = s.first_index; i < end; i += 7) {
@@ -110,6 +113,7 @@ TEST(Segments, PatchCoordinatesLeadToTheVertex) {
         }
     }
     EXPECT_GT(tested, 1000u);
+    EXPECT_GT(above, 10u);
 }
 
 // Culling never removes a triangle that the view shows, whatever is in front.

@@ -29,13 +29,22 @@ namespace {
 /// Sets an environment variable while it lives.
 class Environment {
   public:
-    Environment(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
+    Environment(const char* name, const char* value) : name_(name) {
+        if (const char* before = std::getenv(name)) before_ = before;
+        setenv(name, value, 1);
+    }
     Environment(const Environment&) = delete;
     Environment& operator=(const Environment&) = delete;
-    ~Environment() { unsetenv(name_); }
+    ~Environment() {
+        if (before_)
+            setenv(name_, before_->c_str(), 1);
+        else
+            unsetenv(name_);
+    }
 
   private:
     const char* name_;
+    std::optional<std::string> before_;
 };
 
 std::vector<BackendChoice> available_backends() {

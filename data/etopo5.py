@@ -1,0 +1,141 @@
+#!/usr/bin/python3
+"""etopo5.tif: ETOPO5 with its faults corrected. README.md tells how each was found.
+
+    etopo5.py FERRET_DATA LAND_MASK OUTPUT      (the folder of etopo5.cdf in Debian's ferret-datasets; land_mask.tif)
+
+The source has a sample at every node, 5' apart: column j at longitude j/12, row i at latitude 90 - i/12 degrees. The output
+has one in the middle of every 5' cell, from 180 W and 90 N. Land was surveyed in cells, which the source has put at wrong
+nodes, so that most of its heights land on the middle of a cell of the output unchanged.
+"""
+import sys
+
+import numpy
+from osgeo import gdal
+
+gdal.UseExceptions()
+ROWS, COLUMNS = 2160, 4320
+
+# The nodes that a cell (row, column) takes its height from, as steps from the node at its north-west corner.
+SEA = dict(rows=(0, 1), columns=(0, 1))  # samples are where they say: the mean of the four corners
+LAND = dict(rows=(0,), columns=(-1,))  # samples are 7.5' west and 2.5' north of their cell
+OCEANIA = dict(rows=(1,), columns=(-2,))  # 12.5' west and 2.5' south
+
+COAST = 3  # cells from the sea within which land below 0 is taken for a sample of the sea
+
+
+def read_source(folder):
+    values = gdal.Open(f"NETCDF:{folder}/etopo5.cdf:ROSE").ReadAsArray()
+    heights = numpy.rint(values).astype(numpy.int32)
+    if heights.shape != (ROWS + 1, COLUMNS) or numpy.abs(values - heights).max() != 0:
+        raise SystemExit("etopo5.cdf: not 4320 x 2161 whole metres")
+    # 1280 samples in file order belong elsewhere; they hang over from one row into the next.
+    heights[2054, 3520:] = (heights[2053, 3520:] + heights[2055, 3520:]) // 2
+    heights[2055, :480] = (heights[2054, :480] + heights[2056, :480]) // 2
+    return heights
+
+
+def around(cells, reach):
+    """Sums over (2 reach + 1)^2 cells; longitudes go around, latitudes end."""
+    padded = numpy.pad(numpy.pad(cells, ((0, 0), (reach, reach)), mode="wrap"), ((reach, reach), (0, 0)))
+    sums = numpy.pad(padded.astype(float).cumsum(0).cumsum(1), ((1, 0), (1, 0)))
+    size = 2 * reach + 1
+    return sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]
+
+
+def mean_of_nodes(heights, wanted, rows, columns):
+    """Mean of a cell's wanted nodes; NaN where it has none."""
+    total, count = numpy.zeros((ROWS, COLUMNS)), numpy.zeros((ROWS, COLUMNS))
+    for row in rows:
+        lines = numpy.clip(numpy.arange(ROWS) + row, 0, ROWS)
+        for column in columns:
+            use = numpy.roll(wanted[lines], -column, axis=1)
+            total += numpy.where(use, numpy.roll(heights[lines], -column, axis=1), 0)
+            count += use
+    return numpy.where(count > 0, total / numpy.maximum(count, 1), numpy.nan)
+
+
+def is_coarse(heights):
+    """Cells around which land came from a 10' grid: every second column is then half-way between its neighbours."""
+    west, east = numpy.roll(heights, 1, axis=1), numpy.roll(heights, -1, axis=1)
+    telling = (heights > 0) & (west > 0) & (east > 0) & (numpy.abs(west - east) > 3)
+    telling[:, 1::2] = False
+    halfway = telling & (numpy.abs(2 * heights - west - east) <= 1)
+
+    def weight(nodes):  # near ones count most; far ones decide where there is little land
+        return around(nodes[:ROWS], 15) + 0.05 * around(nodes[:ROWS], 60)
+
+    return weight(halfway) > 0.7 * weight(telling)
+
+
+def slope(cells, axis):
+    """Change from cell to cell, the least of what both neighbours allow; 0 at peaks and beside cells without a value."""
+    before, after = cells - numpy.roll(cells, 1, axis), numpy.roll(cells, -1, axis) - cells
+    size = numpy.minimum(numpy.abs(before + after) / 2, 2 * numpy.minimum(numpy.abs(before), numpy.abs(after)))
+    return numpy.where(before * after > 0, numpy.sign(before) * size, 0)
+
+
+def coarse_land(heights, wanted):
+    """Heights of the 10' cells that the source was interpolated from, in 5' cells. Samples of the survey are in even rows
+    and odd columns, 10' west and 5' north of their cell. A cell is sloped but keeps its mean, and makes no new peaks
+    (van Leer 1977, J. Comp. Phys. 23, 276, eq. 67)."""
+    survey = numpy.where(wanted, heights, numpy.nan)[:ROWS:2, 1::2]
+    survey = numpy.roll(survey, 1, axis=1)
+    southward, eastward = slope(survey, 0), slope(survey, 1)
+    cells = numpy.empty((ROWS, COLUMNS))
+    for row in (0, 1):
+        for column in (0, 1):
+            cells[row::2, column::2] = survey + (row - 0.5) / 2 * southward + (column - 0.5) / 2 * eastward
+    return cells
+
+
+def in_oceania():
+    latitude = 90 - (numpy.arange(ROWS)[:, None] + 0.5) / 12
+    longitude = (numpy.arange(COLUMNS)[None, :] + 0.5) / 12
+    return (latitude < -10) & (latitude > -50) & (longitude > 110) & (longitude < 180)
+
+
+def land_heights(heights, mask):
+    coarse, oceania = is_coarse(heights), in_oceania()
+
+    def placed(wanted):
+        fine = numpy.where(oceania, mean_of_nodes(heights, wanted, **OCEANIA), mean_of_nodes(heights, wanted, **LAND))
+        return numpy.where(coarse, coarse_land(heights, wanted), fine)
+
+    near_sea = around(mask == 0, COAST) > 0.5
+    cells = numpy.where(near_sea, placed(heights > 0), placed(numpy.ones_like(heights, bool)))
+    return filled(cells, mask == 1, 1)
+
+
+def sea_heights(heights, mask):
+    depths = mean_of_nodes(heights, heights <= 0, **SEA)
+    return numpy.minimum(filled(depths, mask == 0, -1), -1)
+
+
+def filled(values, wanted, otherwise):
+    """Wanted cells without a value take the mean of the cells around them that have one, up to three cells away."""
+    values = numpy.where(wanted, values, numpy.nan)
+    for _ in range(3):
+        known = ~numpy.isnan(values)
+        count = numpy.rint(around(known, 1))
+        mean = around(numpy.where(known, values, 0), 1) / numpy.maximum(count, 1)
+        values = numpy.where(wanted & ~known & (count > 0), mean, values)
+    return numpy.where(numpy.isnan(values), otherwise, values)
+
+
+def main(folder, mask_file, output):
+    heights = read_source(folder)
+    mask = numpy.roll(gdal.Open(mask_file).ReadAsArray(), COLUMNS // 2, axis=1)  # from longitude 0, as the source
+    merged = numpy.where(mask == 1, land_heights(heights, mask), sea_heights(heights, mask))
+    merged = numpy.roll(numpy.rint(merged).astype(numpy.int16), COLUMNS // 2, axis=1)
+
+    options = ["COMPRESS=DEFLATE", "PREDICTOR=2", "ZLEVEL=9", "BLOCKYSIZE=24"]
+    file = gdal.GetDriverByName("GTiff").Create(output, COLUMNS, ROWS, 1, gdal.GDT_Int16, options)
+    file.SetGeoTransform((-180, 1 / 12, 0, 90, 0, -1 / 12))
+    file.SetProjection("EPSG:4326")
+    band = file.GetRasterBand(1)
+    band.SetDescription("height above mean sea level")
+    band.SetUnitType("m")
+    band.WriteArray(merged)
+
+
+main(*sys.argv[1:])

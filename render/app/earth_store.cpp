@@ -1,0 +1,67 @@
+#include "render/app/earth_store.h"
+
+#include <unistd.h>
+
+#include "planet/error.h"
+#include "planet/store/bake.h"
+#include "render/app/data_path.h"
+
+namespace render {
+
+namespace {
+
+using planet::ElevationStore;
+
+planet::BakeOptions options_for(const Earth& earth, const std::function<void(std::string_view, double)>& progress) {
+    planet::BakeOptions options;
+    options.undulation = [geoid = earth.geoid](std::span<const glm::dvec3> normals,
+                                               std::span<planet::GeoidUndulation> out) {
+        geoid->undulations(normals, out);
+    };
+    options.undulation_name = earth.geoid->description();
+    options.progress = progress;
+    options.memory_bytes = std::size_t{4} << 30;
+    return options;
+}
+
+/// Bakes into a file of another name first. Nothing if the folder does not take it.
+std::shared_ptr<const ElevationStore> bake_to(const std::filesystem::path& file, const Earth& earth,
+                                              const planet::BakeOptions& options) {
+    std::filesystem::path temporary = file;
+    temporary += "." + std::to_string(::getpid()) + ".baking";
+    std::error_code ignored;
+    try {
+        planet::bake(*earth.heights, options, temporary);
+        std::filesystem::rename(temporary, file);
+        return std::make_shared<const ElevationStore>(ElevationStore::open(file));
+    } catch (const std::exception&) {
+        std::filesystem::remove(temporary, ignored);
+        return nullptr;
+    }
+}
+
+}  // namespace
+
+std::shared_ptr<const ElevationStore> open_earth_store(const EarthSources& sources, LazyEarth& earth,
+                                                       ChecksumIndex& index,
+                                                       const std::function<void(std::string_view, double)>& progress) {
+    const auto folder = cache_folder();
+    std::filesystem::path file;
+    if (folder) {
+        file = *folder / ("earth-" + earth_checksum(sources, index).substr(0, 32) + "-v" +
+                          std::to_string(planet::store_format_version) + ".octa");
+        if (std::filesystem::exists(file)) {
+            try {
+                return std::make_shared<const ElevationStore>(ElevationStore::open(file));
+            } catch (const planet::Error&) {
+                // Damaged: bake it anew.
+            }
+        }
+    }
+    const planet::BakeOptions options = options_for(earth.get(), progress);
+    if (folder)
+        if (auto store = bake_to(file, earth.get(), options)) return store;
+    return std::make_shared<const ElevationStore>(planet::bake_in_memory(*earth.get().heights, options));
+}
+
+}  // namespace render
