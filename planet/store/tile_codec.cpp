@@ -203,19 +203,30 @@ void write_inner(ByteWriter& out, const BakedTile& baked) {
     write_bits(out, child);
     // Records of one level are alike: as a level's least one and what the others have above it.
     RiceWriter rice(out);
+    const auto write_codes = [&rice](std::vector<std::uint64_t>& codes) {
+        const std::uint64_t least = codes.empty() ? 0 : *std::min_element(codes.begin(), codes.end());
+        for (std::uint64_t& c : codes) c -= least;
+        rice.group({&least, 1});
+        rice.group(codes);
+    };
     for (unsigned first = 1; first < tile_cells; first *= 2) {
         std::vector<std::uint64_t> deviation, radius;
         for (unsigned i = first; i < 2 * first; ++i) {
             if (stores_deviation(i)) deviation.push_back(deviation_code(tile.deviation[i]));
             if (stores_radius(i)) radius.push_back(radius_code(tile.radius[i]));
         }
-        for (std::vector<std::uint64_t>* codes : {&deviation, &radius}) {
-            const std::uint64_t least = *std::min_element(codes->begin(), codes->end());
-            for (std::uint64_t& c : *codes) c -= least;
-            rice.group({&least, 1});
-            rice.group(*codes);
-        }
+        write_codes(deviation);
+        write_codes(radius);
     }
+    // Those of the roots below lie on the ladders, like all records on sides: exact.
+    std::vector<std::uint64_t> deviation, radius;
+    for (std::size_t k = 0; k < tile_cells; ++k) {
+        if (!tile.child_exists[k]) continue;
+        deviation.push_back(deviation_code(tile.child_deviation[k]));
+        radius.push_back(radius_code(tile.child_radius[k]));
+    }
+    write_codes(deviation);
+    write_codes(radius);
 }
 
 std::vector<std::uint64_t> read_codes(RiceReader& rice, std::size_t count, std::uint64_t end) {
@@ -254,6 +265,19 @@ void read_inner_level(RiceReader& rice, unsigned first, Tile& tile) {
     }
 }
 
+void read_children(RiceReader& rice, Tile& tile) {
+    const std::size_t children = tile.child_exists.count();
+    const auto deviation = read_codes(rice, children, deviation_codes);
+    const auto radius = read_codes(rice, children, radius_codes);
+    tile.child_deviation.assign(tile_cells, 0);
+    tile.child_radius.assign(tile_cells, 0);
+    for (std::size_t k = 0, c = 0; k < tile_cells; ++k) {
+        if (!tile.child_exists[k]) continue;
+        tile.child_deviation[k] = deviation_from_code(static_cast<unsigned>(deviation[c]));
+        tile.child_radius[k] = radius_from_code(static_cast<unsigned>(radius[c++]));
+    }
+}
+
 void read_inner(ByteReader& in, const TileScale& scale, Tile& tile) {
     static thread_local TileLattice lattice;
     tile.min_height = finite(in.f32());
@@ -263,6 +287,7 @@ void read_inner(ByteReader& in, const TileScale& scale, Tile& tile) {
     {
         RiceReader rice(in);
         for (unsigned first = 1; first < tile_cells; first *= 2) read_inner_level(rice, first, tile);
+        read_children(rice, tile);
     }
     std::vector<std::uint8_t> exists(tile_cells);
     for (std::size_t i = 1; i < tile_cells; ++i) exists[i] = tile.deviation[i] > 0;
