@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "planet/store/byte_stream.h"
@@ -71,8 +72,8 @@ std::span<const std::int64_t> read_lattice(ByteReader& in, std::size_t count) {
     return q;
 }
 
-float finite(float v) {
-    if (!std::isfinite(v)) throw MalformedBytes("a number is not finite");
+float finite(float v, float largest = std::numeric_limits<float>::max()) {
+    if (!(std::abs(v) <= largest)) throw MalformedBytes("a number is out of range");
     return v;
 }
 
@@ -91,7 +92,7 @@ void read_undulations(ByteReader& in, Tile& tile) {
     tile.undulation.resize(tile.height.size());
     const std::size_t own = own_undulations(tile.root, tile.depth);
     if (own == 0) {
-        for (std::size_t v = 0; v < 3; ++v) tile.undulation[v].m = static_cast<double>(finite(in.f32()));
+        for (std::size_t v = 0; v < 3; ++v) tile.undulation[v].m = static_cast<double>(finite(in.f32(), 1e4f));
     } else {
         const auto q = read_lattice(in, own);
         for (std::size_t v = 0; v < own; ++v) tile.undulation[v].m = static_cast<double>(q[v]) * undulation_quantum_m;
