@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "planet/mesh/placed_tile.h"
+#include "planet/mesh/smooth_ellipsoid.h"
 #include "planet/octahedron/cell_metrics.h"
 
 namespace planet::testing {
@@ -38,6 +39,14 @@ class BallTiles final : public TileSource {
     }
 
     std::size_t tile_count() const { return tiles_.size(); }
+
+    /// The bounds of levels 0 .. finest_level - 1.
+    std::vector<LevelBounds> bounds() const {
+        std::vector<LevelBounds> list;
+        for (int level = 0; level < finest_; ++level)
+            list.push_back({static_cast<double>(deviation_.at(level)), static_cast<double>(radius_.at(level))});
+        return list;
+    }
 
   private:
     std::unique_ptr<PlacedTile> make(LocationCode root) const {
