@@ -28,6 +28,9 @@ class GrowingArray {
     void push(const T& value) { data_[size_++] = value; }
     void pop() { --size_; }
     void clear() { size_ = 0; }
+    /// For writers that keep a pointer of their own: where the next element goes, and where it has got to.
+    T* end() { return data_.get() + size_; }
+    void set_end(const T* end) { size_ = static_cast<std::size_t>(end - data_.get()); }
 
     const T& back() const { return data_[size_ - 1]; }
     const T& operator[](std::size_t i) const { return data_[i]; }

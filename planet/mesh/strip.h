@@ -110,8 +110,8 @@ class StripWriter {
   public:
     /// Room for that many more leaves.
     void reserve(std::size_t leaves) {
-        left_.reserve_more(leaves + 1);
-        right_.reserve_more(leaves + 1);
+        left_.reserve_more(leaves + 2);  // one beyond the top is scratch
+        right_.reserve_more(leaves + 2);
         indices_.reserve_more(2 * leaves + 2);
     }
 
@@ -143,6 +143,31 @@ class StripWriter {
         last_left_ = step.left_side;
         indices_.push(moving.back());
         return moving.back();
+    }
+
+    /// Steps through `count` leaves at once, without a branch a leaf. New vertices are numbered from `next` on, in the
+    /// order of the pushes; returns the number after the last. Room must have been made for `count` leaves.
+    std::uint32_t run(const StripStep* steps, unsigned count, std::uint32_t next) {
+        std::uint32_t *left = left_.end() - 1, *right = right_.end() - 1, *out = indices_.end();
+        bool last_left = last_left_;
+        for (const StripStep* s = steps; s != steps + count; ++s) {
+            std::uint32_t* moving = s->left_side ? left : right;
+            const std::uint32_t* pivot = s->left_side ? right : left;
+            *out = *pivot;  // kept only if the side is the same as before
+            out += s->left_side == last_left;
+            moving[1] = next;  // kept only by a push
+            moving += s->pop ? -1 : 1;
+            next += !s->pop;
+            *out++ = *moving;
+            left = s->left_side ? moving : left;
+            right = s->left_side ? right : moving;
+            last_left = s->left_side;
+        }
+        left_.set_end(left + 1);
+        right_.set_end(right + 1);
+        indices_.set_end(out);
+        last_left_ = last_left;
+        return next;
     }
 
     /// All strips so far, one behind the other.

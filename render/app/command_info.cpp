@@ -59,6 +59,12 @@ void add_versions(Lines& lines) {
     lines.add("OpenImageIO", "openimageio_version", known(openimageio_version));
 }
 
+/// Not the scripts and lists that the data folder holds beside the data.
+bool is_product(const fs::path& file) {
+    const fs::path ending = file.extension();
+    return !ending.empty() && ending != ".py" && ending != ".md";
+}
+
 void add_data(Lines& lines) {
     const auto folder = data_folder();
     std::string places;
@@ -69,7 +75,7 @@ void add_data(Lines& lines) {
     std::error_code failure;
     if (folder)
         for (const auto& entry : fs::directory_iterator(*folder, failure))
-            if (entry.is_regular_file(failure)) sorted.push_back(entry.path());
+            if (entry.is_regular_file(failure) && is_product(entry.path())) sorted.push_back(entry.path());
     std::sort(sorted.begin(), sorted.end());
     for (const auto& file : sorted) {
         const auto bytes = fs::file_size(file, failure);

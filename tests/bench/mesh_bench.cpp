@@ -9,6 +9,7 @@
 #include "ball_tiles.h"
 #include "planet/frames.h"
 #include "planet/mesh/refine.h"
+#include "planet/mesh/smooth_ellipsoid.h"
 
 namespace {
 
@@ -32,6 +33,8 @@ void neighbor_constant_time(benchmark::State& state) {
         benchmark::DoNotOptimize(sum);
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * codes.size()));
+    state.counters["per_call"] = benchmark::Counter(static_cast<double>(state.iterations() * codes.size()),
+                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(neighbor_constant_time);
 
@@ -58,6 +61,8 @@ void neighbor_by_recursion(benchmark::State& state) {
         benchmark::DoNotOptimize(sum);
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * codes.size()));
+    state.counters["per_call"] = benchmark::Counter(static_cast<double>(state.iterations() * codes.size()),
+                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(neighbor_by_recursion);
 
@@ -89,6 +94,31 @@ struct CountSink {
     void tile(const PlacedTile&) {}
     void leaf(const PlacedTile&, unsigned, unsigned) { ++leaves; }
 };
+
+// No heights, no tiles: everything from the bounds of 40 levels. The goal is 20 ms for a million leaves.
+void smooth_from_scratch_with_strip(benchmark::State& state) {
+    const Scene& s = scene();
+    const auto bounds = s.tiles.bounds();
+    SmoothEllipsoid mesh(wgs84);
+    for (auto _ : state) {
+        mesh.refine(bounds, s.test.eye, s.test.K);
+        benchmark::DoNotOptimize(mesh.vertices().data());
+    }
+    state.counters["leaves"] = static_cast<double>(mesh.triangles());
+    state.counters["indices"] = static_cast<double>(mesh.strip().size());
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * mesh.triangles()));
+}
+BENCHMARK(smooth_from_scratch_with_strip)->Unit(benchmark::kMillisecond);
+
+void smooth_uniform_level_17(benchmark::State& state) {
+    SmoothEllipsoid mesh(wgs84);
+    for (auto _ : state) {
+        mesh.refine_to_level(17);
+        benchmark::DoNotOptimize(mesh.vertices().data());
+    }
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * mesh.triangles()));
+}
+BENCHMARK(smooth_uniform_level_17)->Unit(benchmark::kMillisecond);
 
 void walk_only(benchmark::State& state) {
     Scene& s = scene();

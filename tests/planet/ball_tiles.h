@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "planet/mesh/placed_tile.h"
+#include "planet/mesh/smooth_ellipsoid.h"
 #include "planet/octahedron/cell_metrics.h"
 
 namespace planet::testing {
@@ -39,12 +40,24 @@ class BallTiles final : public TileSource {
 
     std::size_t tile_count() const { return tiles_.size(); }
 
+    /// The bounds of levels 0 .. finest_level - 1.
+    std::vector<LevelBounds> bounds() const {
+        std::vector<LevelBounds> list;
+        for (int level = 0; level < finest_; ++level)
+            list.push_back({static_cast<double>(deviation_.at(level)), static_cast<double>(radius_.at(level))});
+        return list;
+    }
+
   private:
     std::unique_ptr<PlacedTile> make(LocationCode root) const {
         Tile t;
         t.root = root;
         t.depth = std::min(tile_levels, finest_ - root.bisection_level());
-        if (finest_ > root.bisection_level() + tile_levels) t.child_exists.set();
+        if (const int below = root.bisection_level() + tile_levels; finest_ > below) {
+            t.child_exists.set();
+            t.child_deviation.assign(tile_cells, deviation_.at(below));
+            t.child_radius.assign(tile_cells, radius_.at(below));
+        }
         const auto normals = tile_normals(root, t.depth);
         for (const auto& n : normals) t.height.push_back(height_ ? static_cast<float>(height_(n)) : 0.0f);
         t.deviation.resize(std::size_t{1} << t.depth);

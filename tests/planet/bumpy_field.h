@@ -1,6 +1,7 @@
 #pragma once
 // A rough analytic planet for tests: rugged everywhere, finely sampled within a cap, coarsely elsewhere.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

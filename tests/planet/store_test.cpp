@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <zstd.h>
 
 #include <atomic>
 #include <fstream>
@@ -14,8 +15,10 @@
 #include "planet/error.h"
 #include "planet/octahedron/octahedron_map.h"
 #include "planet/store/bake.h"
+#include "planet/store/byte_stream.h"
 #include "planet/store/store_field.h"
 #include "planet/store/tile_cache.h"
+#include "planet/store/tile_codec.h"
 
 namespace planet {
 namespace {
@@ -219,6 +222,44 @@ TEST_F(StoreFile, FlippedBytesOfTheFileNeverGoUnnoticed) {
         }
     }
     EXPECT_GE(noticed, 10);
+}
+
+// Damage that a checksum cannot see, because somebody made it: bytes that decompress, but are not a tile.
+TEST_F(StoreFile, CraftedTilesNeverCrash) {
+    const auto file = baked("a.octa");
+    sqlite3* db = nullptr;
+    ASSERT_EQ(sqlite3_open(file.c_str(), &db), SQLITE_OK);
+    sqlite3_stmt* select = nullptr;
+    sqlite3_prepare_v2(db, "SELECT code, data FROM tiles ORDER BY code", -1, &select, nullptr);
+    const TileScale scale{Placement{}, 0.25, true};
+    std::mt19937 random(17);
+    int decoded = 0, refused = 0;
+    while (sqlite3_step(select) == SQLITE_ROW) {
+        const LocationCode root(static_cast<std::uint64_t>(sqlite3_column_int64(select, 0)));
+        std::vector<std::uint8_t> payload(1 << 16);
+        payload.resize(ZSTD_decompress(payload.data(), payload.size(), sqlite3_column_blob(select, 1),
+                                       static_cast<std::size_t>(sqlite3_column_bytes(select, 1))));
+        for (int trial = 0; trial < 6; ++trial) {
+            std::vector<std::uint8_t> crafted = payload;
+            for (int k = 0; k <= trial; ++k)
+                crafted[random() % crafted.size()] = static_cast<std::uint8_t>(trial % 2 ? random() : 255);
+            if (trial == 5) crafted.resize(random() % crafted.size());
+            std::vector<std::uint8_t> frame(ZSTD_compressBound(crafted.size()));
+            frame.resize(ZSTD_compress(frame.data(), frame.size(), crafted.data(), crafted.size(), 1));
+            try {
+                const Tile tile = decode_tile(root, frame, scale);
+                EXPECT_TRUE(
+                    std::all_of(tile.height.begin(), tile.height.end(), [](float h) { return std::isfinite(h); }));
+                ++decoded;
+            } catch (const MalformedBytes&) {
+                ++refused;
+            }
+        }
+    }
+    sqlite3_finalize(select);
+    sqlite3_close(db);
+    EXPECT_GT(decoded, 10);  // other heights are a tile too
+    EXPECT_GT(refused, 10);
 }
 
 TEST_F(StoreFile, ATileThatIsListedButMissingIsDamage) {

@@ -158,6 +158,20 @@ TEST(Program, DistancePrintsMetresFirst) {
     EXPECT_NEAR(json.at("start_azimuth_deg").get<double>(), 161.890524736, 1e-8);
 }
 
+TEST(Program, HeightOfTheShippedEarth) {
+    const ScratchFolder folder;
+    const ScratchVariable data("OCTAGLOBE_DATA", OCTAGLOBE_SOURCE_DIR "/data");
+    // Blanca Peak is 4372 m high; its 3" samples are some tens of metres lower.
+    const Outcome peak = run(folder.path(), words("query height 37.5767,-105.4858 --json h.json"));
+    EXPECT_EQ(peak.status, 0) << peak.err;
+    EXPECT_NEAR(std::strtod(peak.out.c_str(), nullptr), 4372, 60);
+    const auto json = nlohmann::json::parse(content(folder / "h.json"));
+    EXPECT_NEAR(json.at("height_m").get<double>(), 4372, 60);
+    EXPECT_EQ(json.at("ellipsoidal_height_m").get<double>(),
+              json.at("height_m").get<double>() + json.at("geoid_undulation_m").get<double>());
+    EXPECT_EQ(std::strtod(run(folder.path(), words("query height -16.5,180")).out.c_str(), nullptr), 0) << "the sea";
+}
+
 TEST(Program, NegativePlacesAreValues) {
     const ScratchFolder folder;
     for (const char* call : {"query distance -16.5,180 -16.5,-180", "query distance -.5,180 -.5,-180",
