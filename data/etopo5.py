@@ -29,9 +29,18 @@ def read_source(folder):
     if heights.shape != (ROWS + 1, COLUMNS) or numpy.abs(values - heights).max() != 0:
         raise SystemExit("etopo5.cdf: not 4320 x 2161 whole metres")
     # 1280 samples in file order belong elsewhere; they hang over from one row into the next.
-    heights[2054, 3520:] = (heights[2053, 3520:] + heights[2055, 3520:]) // 2
-    heights[2055, :480] = (heights[2054, :480] + heights[2056, :480]) // 2
+    interpolate_rows(heights[:, 3520:], 2054, 2054)
+    interpolate_rows(heights[:, :480], 2055, 2055)
+    # Arnhem Land lies under water for four rows.
+    interpolate_rows(heights[:, 1566:1632], 1235, 1238)
     return heights
+
+
+def interpolate_rows(heights, first, last):
+    """Rows first to last, from those before and after."""
+    above, below, span = heights[first - 1], heights[last + 1], last + 2 - first
+    for step in range(1, span):
+        heights[first - 1 + step] = (above * (span - step) + below * step) // span
 
 
 def around(cells, reach):

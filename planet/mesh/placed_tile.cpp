@@ -53,6 +53,28 @@ PlacedTile::PlacedTile(const Tile& tile, const Placement& placement)
                     std::nextafter(static_cast<float>(r), std::numeric_limits<float>::max())};
         if (placement.exaggeration == 1.0) split[i].radius = tile.radius[i];
     }
+    if (children_) bound_children(tile, rounded, placement.exaggeration);
+}
+
+// The split vertex of a root below is not known here, but it lies near the middle of the chord of its split side: the
+// plane of its cell meets its normal there, to second order, and the certified deviation bounds how far it is from that
+// plane. 2 % of the side covers the second order and the roundings of an exaggerated record (see the constructor).
+void PlacedTile::bound_children(const Tile& tile, const std::vector<glm::vec3>& rounded, double exaggeration) {
+    const TileLayout& layout = tile_layout();
+    const double e = std::max(1.0, exaggeration);
+    const double rounding = 2.0 * (1.0 + e) * (max_bisection_level + 1);
+    child_bound.assign(tile_cells, SplitRecord{0, 0, 0, 0, 0});
+    for (std::size_t k = 0; k < tile_cells; ++k) {
+        if (!tile.child_exists[k] || !(tile.child_deviation[k] > 0)) continue;
+        const auto& corner = layout.corners[tile_cells + k];
+        const glm::vec3 &a = rounded[corner[0]], &b = rounded[corner[1]];
+        const glm::vec3 middle = 0.5f * (a + b);
+        const double deviation = e * static_cast<double>(tile.child_deviation[k]);
+        const double radius = e * static_cast<double>(tile.child_radius[k]) + deviation +
+                              0.02 * static_cast<double>(glm::distance(a, b)) + rounding;
+        child_bound[k] = {middle.x, middle.y, middle.z, static_cast<float>(deviation * 1.0001),
+                          static_cast<float>(radius * 1.0001)};
+    }
 }
 
 bool PlacedTile::has_child_below(unsigned i) const {

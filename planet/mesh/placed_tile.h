@@ -38,7 +38,10 @@ class PlacedTile {
 
     LocationCode root;
     int depth;
-    std::vector<SplitRecord> split;      ///< by local index, 2^depth
+    std::vector<SplitRecord> split;  ///< by local index, 2^depth
+    /// By position at relative level 12: a record that the tile below passes at most: where this one is not split, the
+    /// cell is a leaf, and the tile need not be loaded to know it. Empty if there are no tiles below.
+    std::vector<SplitRecord> child_bound;
     std::vector<GridPosition> position;  ///< by vertex index
     std::vector<float> height;           ///< by vertex index, metres above the datum, not exaggerated
     bool damaged;
@@ -48,15 +51,24 @@ class PlacedTile {
     /// @param k 0..4095
     const PlacedTile* child(const TileSource& source, unsigned k) const;
 
+    /// The same, but only if its root may pass the test.
+    template <class Test>
+    const PlacedTile* child(const TileSource& source, unsigned k, const Test& test) const {
+        return !child_bound.empty() && test(child_bound[k]) ? child(source, k) : nullptr;
+    }
+
     /// Whether the tile has a tile below its local cell i.
     bool has_child_below(unsigned i) const;
 
     std::size_t bytes() const {
-        return sizeof *this + split.size() * sizeof(SplitRecord) + position.size() * sizeof(GridPosition) +
-               height.size() * sizeof(float) + (children_ ? tile_cells * sizeof(children_[0]) : 0);
+        return sizeof *this + (split.size() + child_bound.size()) * sizeof(SplitRecord) +
+               position.size() * sizeof(GridPosition) + height.size() * sizeof(float) +
+               (children_ ? tile_cells * sizeof(children_[0]) : 0);
     }
 
   private:
+    void bound_children(const Tile& tile, const std::vector<glm::vec3>& rounded, double exaggeration);
+
     // By position: unknown until asked for (nullptr), known to be missing (this), or the tile.
     std::unique_ptr<std::atomic<const PlacedTile*>[]> children_;
 };

@@ -30,7 +30,7 @@ class Walk {
   private:
     void below(const PlacedTile& t, unsigned i, unsigned state) {
         if (t.depth == tile_levels) {
-            const PlacedTile* child = t.child(tiles_, i - tile_cells);
+            const PlacedTile* child = t.child(tiles_, i - tile_cells, test_);
             if (child && test_(child->split[1])) {
                 sink_.tile(*child);
                 cell(*child, 1, state);

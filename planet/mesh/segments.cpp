@@ -29,7 +29,7 @@ class RootCollector {
     void cell(const PlacedTile& t, unsigned i) {
         if (i >> t.depth) {
             // A leaf of this tile, unless a child tile goes on. Its parent was not hidden: draw it.
-            const PlacedTile* child = t.depth == tile_levels ? t.child(tiles_, i - tile_cells) : nullptr;
+            const PlacedTile* child = t.depth == tile_levels ? t.child(tiles_, i - tile_cells, view_.test) : nullptr;
             if (child)
                 cell(*child, 1);
             else
@@ -70,25 +70,39 @@ struct Frame {
     }
 };
 
-/// The frame of the tile that holds a segment's root, such that the root's apex, left, right are (0,0), (1,0), (0,1);
-/// or of the patch's far half, where they are (1,1), (0,1), (1,0).
-Frame frame_of_root(const PlacedTile& t, unsigned root, bool far_half) {
+/// The frame of a tile such that the apex, left and right of cell `half` are (0,0), (1,0), (0,1); or of the patch's far
+/// half, where they are (1,1), (0,1), (1,0). One of the two cells contains the other.
+Frame frame_of_tile(LocationCode tile, LocationCode half, bool far_half) {
     const TileLayout& layout = tile_layout();
-    const auto point = [&](int k) {
-        const auto& p = layout.lattice[layout.corners[root][static_cast<std::size_t>(k)]];
-        return glm::ivec2(p[0], p[1]);
-    };
-    const glm::ivec2 left = point(0) - point(2), right = point(1) - point(2), apex = point(2);
-    const int leg2 = left.x * left.x + left.y * left.y;  // the legs are equal and at right angles
-    const glm::ivec2 tile_corners[3] = {{64, 0}, {0, 64}, {0, 0}};
-    Frame f{.tile = t.root, .u = {}, .v = {}};
-    for (int k = 0; k < 3; ++k) {
-        const glm::ivec2 p = tile_corners[k] - apex;
-        const std::int64_t u = one * (p.x * left.x + p.y * left.y) / leg2,
-                           v = one * (p.x * right.x + p.y * right.y) / leg2;
-        f.u[k] = far_half ? one - u : u;
-        f.v[k] = far_half ? one - v : v;
+    Frame f{.tile = tile, .u = {one, 0, 0}, .v = {0, one, 0}};
+    const int below = half.bisection_level() - tile.bisection_level();
+    if (below < 0) {  // from the half down to the tile: corners left, right, apex of each child
+        for (int i = -below - 1; i >= 0; --i)
+            for (std::int64_t* p : {f.u, f.v}) {
+                const std::int64_t m = (p[0] + p[1]) / 2;
+                p[tile.bits() >> i & 1 ? 0 : 1] = p[2];
+                p[2] = m;
+            }
+    } else {
+        const auto local = static_cast<std::size_t>((half.bits() ^ tile.bits() << below) | std::uint64_t{1} << below);
+        const auto point = [&](std::size_t k) {
+            const auto& p = layout.lattice[layout.corners[local][k]];
+            return glm::ivec2(p[0], p[1]);
+        };
+        const glm::ivec2 left = point(0) - point(2), right = point(1) - point(2), apex = point(2);
+        const int leg2 = left.x * left.x + left.y * left.y;  // the legs are equal and at right angles
+        const glm::ivec2 tile_corners[3] = {{64, 0}, {0, 64}, {0, 0}};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::ivec2 p = tile_corners[k] - apex;
+            f.u[k] = one * (p.x * left.x + p.y * left.y) / leg2;
+            f.v[k] = one * (p.x * right.x + p.y * right.y) / leg2;
+        }
     }
+    if (far_half)
+        for (std::size_t k = 0; k < 3; ++k) {
+            f.u[k] = one - f.u[k];
+            f.v[k] = one - f.v[k];
+        }
     return f;
 }
 
@@ -99,12 +113,13 @@ class SegmentBuilder {
 
     void build(const Root& root) {
         const LocationCode code = code_of(*root.tile, root.local);
-        const LocationCode patch = diamond(code);
+        const LocationCode half = code.ancestor(std::min(code.bisection_level(), view_.finest_patch_level));
+        const LocationCode patch = diamond(half);
         const auto first_index = static_cast<std::uint32_t>(strip_.indices().size());
         first_vertex_ = vertices.size();
         const auto first_leaf = static_cast<std::uint32_t>(leaf_levels.size());
         begun_ = false;
-        frames_.assign(1, frame_of_root(*root.tile, root.local, patch != code));
+        frames_.assign(1, frame_of_tile(root.tile->root, half, patch != half));
         room();
         Walk walk(tiles_, view_.test, *this);
         walk.cell(*root.tile, root.local, strip_state_of_segment(code));

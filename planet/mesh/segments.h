@@ -23,7 +23,8 @@ static_assert(sizeof(SegmentVertex) == 24);
 
 struct Segment {
     LocationCode root;
-    /// Names the square (patch) whose lattice u, v run over: the root and its neighbour across the split side. The
+    /// Names the square (patch) whose lattice u, v run over: a cell and its neighbour across the split side. The cell is
+    /// the root, or its ancestor at SegmentView::finest_patch_level. The
     /// lesser code's apex is (0,0), its left corner (1,0), its right corner (0,1), the other apex (1,1).
     LocationCode patch;
     double distance_m;  ///< least distance from the eye to anything in the segment; a lower bound
@@ -41,6 +42,8 @@ struct SegmentView {
     double segment_angle = 0.1;
     double radius_m = 6371008.8;  ///< of the planet
     int detail_level = 24;        ///< bisection level, a multiple of 12; see Segment::detailed
+    /// No patch is of a finer bisection level: below, the lattice of normals would be finer than the data.
+    int finest_patch_level = max_bisection_level;
 };
 
 /// Strips and vertices of all segments in view, in Sierpinski order. Keeps its storage from one use to the next.

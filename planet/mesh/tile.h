@@ -31,6 +31,9 @@ struct Tile {
     std::vector<float> radius;
     /// Bit k: the cell at relative level 12 and position k has a tile of its own. Empty unless depth is 12.
     std::bitset<tile_cells> child_exists;
+    /// By position k, metres: the saturated deviation and radius of the root's diamond of the tile below, known before
+    /// that tile is loaded; 0 where there is none. Empty like child_exists.
+    std::vector<float> child_deviation, child_radius;
     float min_height = 0, max_height = 0;  ///< over every finest vertex below, metres
     /// Largest |source sample - lattice| over the source samples in the tile's own cells, metres. A bound on
     /// resampling.

@@ -193,6 +193,19 @@ void settle_sides(std::span<BakedTile> tiles, std::size_t t, int level) {
     }
 }
 
+// What a tile knows of those below it.
+void note_children(std::span<const BakedTile> tiles, BakedTile& tile) {
+    tile.tile.child_deviation.assign(tile_cells, 0);
+    tile.tile.child_radius.assign(tile_cells, 0);
+    for (std::size_t k = 0; k < tile_cells; ++k) {
+        if (tile.below[k] < 0) continue;
+        const BakedTile& below = tiles[static_cast<std::size_t>(tile.below[k])];
+        if (!below.exists[1]) continue;
+        tile.tile.child_deviation[k] = below.tile.deviation[1];
+        tile.tile.child_radius[k] = below.tile.radius[1];
+    }
+}
+
 }  // namespace
 
 void settle(std::span<BakedTile> tiles) {
@@ -209,6 +222,8 @@ void settle(std::span<BakedTile> tiles) {
         }
         end = begin;
     }
+    for (BakedTile& t : tiles)
+        if (t.inner()) note_children(tiles, t);
 }
 
 }  // namespace planet

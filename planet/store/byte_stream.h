@@ -63,6 +63,9 @@ class ByteReader {
         left_ = left_.subspan(size);
         return taken;
     }
+    std::span<const std::uint8_t> left() const { return left_; }
+    /// @param size at most what is left
+    void skip(std::size_t size) { left_ = left_.subspan(size); }
     bool at_end() const { return left_.empty(); }
 
   private:

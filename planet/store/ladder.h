@@ -15,6 +15,8 @@ namespace planet {
 
 inline constexpr int deviation_codes = 512;  ///< the last is 6e10 m: no planet needs it
 
+inline constexpr unsigned radius_codes = 0x7f80;  ///< finite ones
+
 /// By code, metres.
 const std::array<float, deviation_codes>& deviation_steps();
 

@@ -142,7 +142,11 @@ class Checker {
         const TilePointer above = sound(above_root);
         if (!above) return;
         const std::size_t position = root.bits() & (tile_cells - 1);
-        if (!above->child_exists[position]) problem(root, "is not listed by the tile above it");
+        if (!above->child_exists[position])
+            problem(root, "is not listed by the tile above it");
+        else if (above->child_deviation[position] != tile.deviation[1] ||
+                 (tile.deviation[1] > 0 && above->child_radius[position] != tile.radius[1]))
+            problem(root, "is not what the tile above it says of its root");
         const auto& corner = tile_layout().corners[tile_cells | position];
         for (std::size_t v = 0; v < 3; ++v)
             if (tile.height[v] != above->height[corner[v]] ||

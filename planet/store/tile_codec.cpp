@@ -9,44 +9,15 @@
 
 #include "planet/store/byte_stream.h"
 #include "planet/store/ladder.h"
+#include "planet/store/rice_code.h"
 
 namespace planet {
 
 namespace {
 
 constexpr std::size_t most_payload_bytes = 1 << 16;
-constexpr int compression_level = 9;
+constexpr int compression_level = 3;  // little is left to gain after the Rice code
 constexpr std::uint8_t flag_inner = 1, flag_undulation = 2, flag_whole = 4;
-
-// ---- planes: numbers below 2^8 or 2^16 as planes of bytes; what does not fit follows as varints ---------------------
-
-void write_plane8(ByteWriter& out, std::span<const std::uint64_t> values) {
-    for (const std::uint64_t v : values) out.u8(static_cast<std::uint8_t>(std::min<std::uint64_t>(v, 255)));
-    for (const std::uint64_t v : values)
-        if (v >= 255) out.varint(v - 255);
-}
-
-void write_plane16(ByteWriter& out, std::span<const std::uint64_t> values) {
-    const auto stored = [](std::uint64_t v) { return std::min<std::uint64_t>(v, 65535); };
-    for (const std::uint64_t v : values) out.u8(static_cast<std::uint8_t>(stored(v)));
-    for (const std::uint64_t v : values) out.u8(static_cast<std::uint8_t>(stored(v) >> 8));
-    for (const std::uint64_t v : values)
-        if (v >= 65535) out.varint(v - 65535);
-}
-
-void read_plane8(ByteReader& in, std::span<std::uint64_t> values) {
-    const auto plane = in.raw(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = plane[i];
-    for (std::uint64_t& v : values)
-        if (v == 255) v += in.varint();
-}
-
-void read_plane16(ByteReader& in, std::span<std::uint64_t> values) {
-    const auto low = in.raw(values.size()), high = in.raw(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = low[i] | std::uint64_t{high[i]} << 8;
-    for (std::uint64_t& v : values)
-        if (v == 65535) v += in.varint();
-}
 
 // ---- heights and undulations: the three corners, then what each vertex differs from the mean of its ends ------------
 
@@ -59,33 +30,41 @@ std::int64_t in_quanta(double value, double quantum) {
     return std::llround(value / quantum);
 }
 
-std::vector<std::uint64_t> residuals(std::span<const std::int64_t> q) {
-    std::vector<std::uint64_t> r;
-    for (std::size_t v = 3; v < q.size(); ++v) r.push_back(zigzag(q[v] - mean_of_ends(tile_layout(), q, v)));
-    return r;
+// The vertices from `3` to `count` in groups by the level of the cells they split.
+template <class Group>
+void by_level(std::span<std::uint64_t> residual, Group group) {
+    std::size_t begin = 3;
+    for (const std::size_t end : tile_layout().vertex_count) {
+        if (end <= begin || end > residual.size() + 3) continue;
+        group(residual.subspan(begin - 3, end - begin));
+        begin = end;
+    }
 }
 
-void write_corners(ByteWriter& out, std::span<const std::int64_t> q) {
+void write_lattice(ByteWriter& out, std::span<const std::int64_t> q) {
     for (std::size_t v = 0; v < 3; ++v) out.varint(zigzag(q[v]));
+    std::vector<std::uint64_t> residual;
+    for (std::size_t v = 3; v < q.size(); ++v) residual.push_back(zigzag(q[v] - mean_of_ends(tile_layout(), q, v)));
+    RiceWriter rice(out);
+    by_level(residual, [&](std::span<const std::uint64_t> level) { rice.group(level); });
 }
 
 // Reads `count` values. Wide arithmetic and a range check: damage must not overflow.
-std::span<const std::int64_t> read_lattice(ByteReader& in, bool wide, std::size_t count) {
+std::span<const std::int64_t> read_lattice(ByteReader& in, std::size_t count) {
     static thread_local std::vector<std::uint64_t> residual;
     static thread_local std::vector<std::int64_t> q;
     q.resize(count);
     residual.resize(count - 3);
     for (std::size_t v = 0; v < 3; ++v) q[v] = unzigzag(in.varint());
-    if (wide)
-        read_plane16(in, residual);
-    else
-        read_plane8(in, residual);
+    {
+        RiceReader rice(in);
+        by_level(residual, [&](std::span<std::uint64_t> level) { rice.group(level); });
+    }
     const auto in_range = [](std::int64_t v) { return v >= -largest_height_quanta && v <= largest_height_quanta; };
     const TileLayout& layout = tile_layout();
     bool fits = in_range(q[0]) && in_range(q[1]) && in_range(q[2]);
     for (std::size_t v = 3; v < count && fits; ++v) {
-        const std::int64_t r = unzigzag(residual[v - 3]);
-        q[v] = mean_of_ends(layout, q, v) + std::clamp(r, -4 * largest_height_quanta, 4 * largest_height_quanta);
+        q[v] = mean_of_ends(layout, q, v) + unzigzag(residual[v - 3]);
         fits = in_range(q[v]);
     }
     if (!fits) throw MalformedBytes("a height is out of range");
@@ -105,8 +84,7 @@ void write_undulations(ByteWriter& out, const Tile& tile) {
     }
     std::vector<std::int64_t> q;
     for (std::size_t v = 0; v < own; ++v) q.push_back(in_quanta(tile.undulation[v].m, undulation_quantum_m));
-    write_corners(out, q);
-    write_plane8(out, residuals(q));
+    write_lattice(out, q);
 }
 
 void read_undulations(ByteReader& in, Tile& tile) {
@@ -115,7 +93,7 @@ void read_undulations(ByteReader& in, Tile& tile) {
     if (own == 0) {
         for (std::size_t v = 0; v < 3; ++v) tile.undulation[v].m = static_cast<double>(finite(in.f32()));
     } else {
-        const auto q = read_lattice(in, false, own);
+        const auto q = read_lattice(in, own);
         for (std::size_t v = 0; v < own; ++v) tile.undulation[v].m = static_cast<double>(q[v]) * undulation_quantum_m;
     }
     interpolate_undulations(tile.root, tile.depth, tile.undulation);
@@ -149,8 +127,9 @@ void write_leaf(ByteWriter& out, const BakedTile& baked, bool whole) {
         radius.push_back(baked.gain[k].radius);
     }
     if (!whole) write_bits(out, exists);
-    write_plane8(out, deviation);
-    write_plane8(out, radius);
+    RiceWriter rice(out);
+    rice.group(deviation);
+    rice.group(radius);
 }
 
 struct SideGains {
@@ -175,7 +154,7 @@ void settle_leaf(Tile& tile, std::span<const std::uint8_t> exists, const SideGai
             --g;
             const std::uint64_t d = deviation_code(s.deviation[i]) + gains.deviation[g];
             const std::uint64_t r = radius_code(s.radius[i]) + gains.radius[g];
-            if (d >= deviation_codes || r >= 0x7f80) throw MalformedBytes("a record is out of range");
+            if (d >= deviation_codes || r >= radius_codes) throw MalformedBytes("a record is out of range");
             s.deviation[i] = deviation_from_code(static_cast<unsigned>(d));
             s.radius[i] = radius_from_code(static_cast<unsigned>(r));
         }
@@ -191,8 +170,11 @@ void read_leaf(ByteReader& in, bool whole, const TileScale& scale, Tile& tile) {
     std::vector<std::uint8_t> exists(records);
     existence_inside(tile.depth, on_side, exists);
     SideGains gains{std::vector<std::uint64_t>(side_count), std::vector<std::uint64_t>(side_count)};
-    read_plane8(in, gains.deviation);
-    read_plane8(in, gains.radius);
+    {
+        RiceReader rice(in);
+        rice.group(gains.deviation);
+        rice.group(gains.radius);
+    }
     own_height_range(tile, exists);
     lattice.set_normals(corners(tile.root), tile.depth);
     lattice.set_positions(scale.placement, tile.height, tile.undulation,
@@ -201,6 +183,10 @@ void read_leaf(ByteReader& in, bool whole, const TileScale& scale, Tile& tile) {
 }
 
 // ---- inner tiles: all deviations; radii of the finest diamonds and of the sides -------------------------------------
+
+bool stores_deviation(unsigned i) {
+    return i > tile_layout().split_neighbor[i];
+}
 
 bool stores_radius(unsigned i) {
     const unsigned beyond = tile_layout().split_neighbor[i];
@@ -214,35 +200,60 @@ void write_inner(ByteWriter& out, const BakedTile& baked) {
     std::vector<std::uint8_t> child(tile_cells);
     for (std::size_t k = 0; k < child.size(); ++k) child[k] = tile.child_exists[k];
     write_bits(out, child);
-    std::vector<std::uint64_t> deviation, radius;
-    for (unsigned i = 1; i < tile_cells; ++i) {
-        if (i > tile_layout().split_neighbor[i]) deviation.push_back(deviation_code(tile.deviation[i]));
-        if (stores_radius(i)) radius.push_back(radius_code(tile.radius[i]));
+    // Records of one level are alike: as a level's least one and what the others have above it.
+    RiceWriter rice(out);
+    const auto write_codes = [&rice](std::vector<std::uint64_t>& codes) {
+        const std::uint64_t least = codes.empty() ? 0 : *std::min_element(codes.begin(), codes.end());
+        for (std::uint64_t& c : codes) c -= least;
+        rice.group({&least, 1});
+        rice.group(codes);
+    };
+    for (unsigned first = 1; first < tile_cells; first *= 2) {
+        std::vector<std::uint64_t> deviation, radius;
+        for (unsigned i = first; i < 2 * first; ++i) {
+            if (stores_deviation(i)) deviation.push_back(deviation_code(tile.deviation[i]));
+            if (stores_radius(i)) radius.push_back(radius_code(tile.radius[i]));
+        }
+        write_codes(deviation);
+        write_codes(radius);
     }
-    write_plane8(out, deviation);
-    write_plane16(out, radius);
+    // Those of the roots below lie on the ladders, like all records on sides: exact.
+    std::vector<std::uint64_t> deviation, radius;
+    for (std::size_t k = 0; k < tile_cells; ++k) {
+        if (!tile.child_exists[k]) continue;
+        deviation.push_back(deviation_code(tile.child_deviation[k]));
+        radius.push_back(radius_code(tile.child_radius[k]));
+    }
+    write_codes(deviation);
+    write_codes(radius);
 }
 
-void read_inner_records(ByteReader& in, Tile& tile) {
-    const TileLayout& layout = tile_layout();
-    std::vector<std::uint64_t> deviation, radius;
-    for (unsigned i = 1; i < tile_cells; ++i) {
-        if (i > layout.split_neighbor[i]) deviation.push_back(0);
-        if (stores_radius(i)) radius.push_back(0);
+std::vector<std::uint64_t> read_codes(RiceReader& rice, std::size_t count, std::uint64_t end) {
+    std::uint64_t least = 0;
+    std::vector<std::uint64_t> codes(count);
+    rice.group({&least, 1});
+    rice.group(codes);
+    for (std::uint64_t& c : codes) {
+        c += least;
+        if (c >= end) throw MalformedBytes("a record is out of range");
     }
-    read_plane8(in, deviation);
-    read_plane16(in, radius);
-    const auto in_range = [](auto& values, std::uint64_t end) {
-        return std::all_of(values.begin(), values.end(), [end](std::uint64_t v) { return v < end; });
-    };
-    if (!in_range(deviation, deviation_codes) || !in_range(radius, 0x7f80))
-        throw MalformedBytes("a record is out of range");
-    std::fill(tile.radius.begin(), tile.radius.end(), 0.0f);
-    tile.deviation[0] = 0;
+    return codes;
+}
+
+// Both cells of a diamond inside the tile get its record.
+void read_inner_level(RiceReader& rice, unsigned first, Tile& tile) {
+    const TileLayout& layout = tile_layout();
+    std::size_t deviations = 0, radii = 0;
+    for (unsigned i = first; i < 2 * first; ++i) {
+        deviations += stores_deviation(i);
+        radii += stores_radius(i);
+    }
+    const auto deviation = read_codes(rice, deviations, deviation_codes);
+    const auto radius = read_codes(rice, radii, radius_codes);
     std::size_t d = 0, r = 0;
-    for (unsigned i = 1; i < tile_cells; ++i) {
+    for (unsigned i = first; i < 2 * first; ++i) {
         const unsigned beyond = layout.split_neighbor[i];
-        if (i > beyond) {
+        if (stores_deviation(i)) {
             tile.deviation[i] = deviation_from_code(static_cast<unsigned>(deviation[d++]));
             if (beyond != 0) tile.deviation[beyond] = tile.deviation[i];
         }
@@ -253,13 +264,30 @@ void read_inner_records(ByteReader& in, Tile& tile) {
     }
 }
 
+void read_children(RiceReader& rice, Tile& tile) {
+    const std::size_t children = tile.child_exists.count();
+    const auto deviation = read_codes(rice, children, deviation_codes);
+    const auto radius = read_codes(rice, children, radius_codes);
+    tile.child_deviation.assign(tile_cells, 0);
+    tile.child_radius.assign(tile_cells, 0);
+    for (std::size_t k = 0, c = 0; k < tile_cells; ++k) {
+        if (!tile.child_exists[k]) continue;
+        tile.child_deviation[k] = deviation_from_code(static_cast<unsigned>(deviation[c]));
+        tile.child_radius[k] = radius_from_code(static_cast<unsigned>(radius[c++]));
+    }
+}
+
 void read_inner(ByteReader& in, const TileScale& scale, Tile& tile) {
     static thread_local TileLattice lattice;
     tile.min_height = finite(in.f32());
     tile.max_height = finite(in.f32());
     const auto child = read_bits(in, tile_cells);
     for (std::size_t k = 0; k < child.size(); ++k) tile.child_exists[k] = child[k];
-    read_inner_records(in, tile);
+    {
+        RiceReader rice(in);
+        for (unsigned first = 1; first < tile_cells; first *= 2) read_inner_level(rice, first, tile);
+        read_children(rice, tile);
+    }
     std::vector<std::uint8_t> exists(tile_cells);
     for (std::size_t i = 1; i < tile_cells; ++i) exists[i] = tile.deviation[i] > 0;
     lattice.set_normals(corners(tile.root), tile.depth);
@@ -347,8 +375,7 @@ std::vector<std::uint8_t> encode_tile(const BakedTile& baked, const TileScale& s
     out.f32(tile.resampling);
     std::vector<std::int64_t> q;
     for (const float h : tile.height) q.push_back(in_quanta(static_cast<double>(h), scale.quantum_m));
-    write_corners(out, q);
-    write_plane16(out, residuals(q));
+    write_lattice(out, q);
     if (scale.has_undulation) write_undulations(out, tile);
     if (baked.inner())
         write_inner(out, baked);
@@ -374,7 +401,7 @@ Tile decode_tile(LocationCode root, std::span<const std::uint8_t> bytes, const T
     tile.height.resize(tile_layout().vertex_count[static_cast<std::size_t>(tile.depth)]);
     tile.deviation.resize(std::size_t{1} << tile.depth);
     tile.radius.resize(std::size_t{1} << tile.depth);
-    const auto q = read_lattice(in, true, tile.height.size());
+    const auto q = read_lattice(in, tile.height.size());
     for (std::size_t v = 0; v < q.size(); ++v)
         tile.height[v] = static_cast<float>(static_cast<double>(q[v]) * scale.quantum_m);
     if (scale.has_undulation) read_undulations(in, tile);

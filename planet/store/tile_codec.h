@@ -21,7 +21,7 @@ struct TileScale {
 /// Undulations are whole multiples of this at vertices that split cells of levels below undulation_level (2.7 km apart
 /// on Earth); at finer vertices they are the mean of the two
 /// ends, rounded to float. EGM96 bends by less than 3 mm in between.
-inline constexpr double undulation_quantum_m = 1.0 / 128;
+inline constexpr double undulation_quantum_m = 1.0 / 32;
 inline constexpr int undulation_level = 24;
 
 /// How many vertices of a tile have an undulation of their own.

@@ -10,6 +10,7 @@
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/sun.h"
 #include "planet/mesh/segments.h"
+#include "planet/octahedron/cell_metrics.h"
 #include "planet/store/store_field.h"
 #include "planet/store/store_tiles.h"
 #include "render/app/data_path.h"
@@ -31,6 +32,8 @@ constexpr int part_side = 2048;
 
 /// The most lattice steps of a patch are this many pixels: one normal a pixel or more, as far as there is data.
 constexpr double patch_pixels = 96;
+/// A patch of this many bisection levels above the finest has two texels between the vertices of the surface.
+constexpr int finest_patch_above = 10;
 constexpr std::size_t patch_limit = 1800;
 
 /// Adds up the time of steps, in the order in which they first came.
@@ -68,6 +71,17 @@ struct Surface {
 
     Surface(std::shared_ptr<const planet::ElevationStore> s, double exaggeration)
         : store(s), field(s), tiles(field.cache(), {store->metadata().ellipsoid, exaggeration}) {}
+
+    PatchSurface for_patches() const {
+        return {.heights = [this](auto normals, auto heights) { field.heights(normals, heights); },
+                .spacing =
+                    [this](const glm::dvec3& normal) {
+                        planet::SurfaceCursor cursor = field.cursor();
+                        cursor.seek(normal);
+                        return planet::cell_metrics(cursor.cell().bisection_level()).vertex_spacing *
+                               wgs84.mean_radius();
+                    }};
+    }
 
     /// A ball below all terrain, m.
     double occluder_radius(double exaggeration) const {
@@ -185,6 +199,7 @@ class Painter {
                      planet::split_reach(camera_.focal_px, camera_.tan_corner(), options_.max_pixel_deviation)};
         view.culling = camera_.culling(part, occluder_radius_);
         view.radius_m = wgs84.mean_radius();
+        view.finest_patch_level = std::max(surface_.store->metadata().finest_level - finest_patch_above, 0);
         view.segment_angle = patch_pixels / camera_.focal_px;
         const auto detailed = [&] {
             return static_cast<std::size_t>(std::count_if(segments_.segments().begin(), segments_.segments().end(),
@@ -195,9 +210,7 @@ class Painter {
             view.segment_angle *= 1.5;
         } while (detailed() > patch_limit && view.segment_angle < 10);
         steps_.time("normals", [&] {
-            patches_.build(
-                segments_, [&](auto normals, auto heights) { surface_.field.heights(normals, heights); },
-                wgs84.mean_radius(), static_cast<int>(threads_));
+            patches_.build(segments_, surface_.for_patches(), wgs84.mean_radius(), static_cast<int>(threads_));
         });
         steps_.time("upload", [&] {
             terrain_->upload(segments_, patches_.layers());

@@ -106,7 +106,7 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, const std::st
     const std::string where = name.substr(0, name.find(',')).starts_with("--") ? name : name.substr(name.find(',') + 1);
     return command
         .add_option_function<std::string>(
-            name, [where, read](const std::string& text) { read(where, text); }, what)
+            name, [where, read = std::move(read)](const std::string& text) { read(where, text); }, what)
         ->type_name(form);
 }
 

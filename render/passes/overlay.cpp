@@ -65,11 +65,15 @@ void OverlayPass::draw(const Camera& camera, const PicturePart& part) {
     gl().DepthFunc(GL_GEQUAL);
     gl().DepthMask(GL_FALSE);
     gl().Enable(GL_CULL_FACE);
+    // The same vertices in another order: depths between them may part by some roundings.
+    gl().Enable(GL_POLYGON_OFFSET_FILL);
+    gl().PolygonOffset(1.0f, 64.0f);
     gl().Enable(GL_BLEND);
     gl().BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     array_.bind();
     gl().DrawArrays(GL_TRIANGLES, 0, count_);
     gl().Disable(GL_BLEND);
+    gl().Disable(GL_POLYGON_OFFSET_FILL);
     gl().Disable(GL_CULL_FACE);
     gl().DepthMask(GL_TRUE);
 }

@@ -20,7 +20,7 @@ class OverlayPass {
     /// Three vertices a triangle: 60 bytes each triangle.
     void upload(const planet::Segments& segments);
 
-    /// Blends over the terrain, which must have been drawn with the same camera: the same depths, bit for bit.
+    /// Blends over the terrain, which must have been drawn with the same camera.
     void draw(const Camera& camera, const PicturePart& part);
 
   private:

@@ -13,7 +13,9 @@ namespace render {
 
 namespace {
 
-constexpr int ringed = patch_side + 2;  // one sample beyond the border, for differences
+/// The surface is flat between its vertices: differences are taken over at least their distance, up to this many texels,
+/// so that normals turn smoothly where texels are finer than the data.
+constexpr int longest_step = 8;
 
 /// Direction at lattice point (i, j), 0..64, of the square whose near half is `near` and far half `far`. Linear in each
 /// half; beyond the border the halves go on.
@@ -25,30 +27,35 @@ glm::dvec3 lattice_normal(const planet::Corners& near, const planet::Corners& fa
 }
 
 /// One patch's 65 x 65 texels from the finest surface by central differences.
-void make_patch(planet::LocationCode patch, const SurfaceHeights& heights, double radius_m, std::int16_t* texels) {
+void make_patch(planet::LocationCode patch, const PatchSurface& surface, double radius_m, std::int16_t* texels) {
     const planet::Corners near = planet::corners(patch), far = planet::corners(planet::neighbor(patch));
-    std::vector<glm::dvec3> normal(ringed * ringed);
-    std::vector<float> height(normal.size());
+    const double texel_m = glm::distance(near.apex, near.left) * radius_m / (patch_side - 1);
+    const int step =
+        static_cast<int>(std::clamp(std::ceil(surface.spacing(lattice_normal(near, far, 32, 32)) / texel_m), 1.0,
+                                    static_cast<double>(longest_step)));
+    const int ringed = patch_side + 2 * step;
+    const auto samples = static_cast<std::size_t>(ringed * ringed);
+    std::vector<glm::dvec3> normal(samples), place(samples);
+    std::vector<float> height(samples);
     for (int j = 0; j < ringed; ++j)
         for (int i = 0; i < ringed; ++i)
-            normal[static_cast<std::size_t>(j * ringed + i)] = lattice_normal(near, far, i - 1, j - 1);
-    heights(normal, height);
+            normal[static_cast<std::size_t>(j * ringed + i)] = lattice_normal(near, far, i - step, j - step);
+    surface.heights(normal, height);
+    for (std::size_t k = 0; k < samples; ++k) place[k] = normal[k] * (radius_m + static_cast<double>(height[k]));
     for (int j = 0; j < patch_side; ++j)
         for (int i = 0; i < patch_side; ++i) {
-            const auto at = [&](int di, int dj) {
-                return static_cast<std::size_t>((j + 1 + dj) * ringed + i + 1 + di);
-            };
-            const auto place = [&](std::size_t k) { return normal[k] * (radius_m + static_cast<double>(height[k])); };
-            const glm::dvec3& n = normal[at(0, 0)];
+            const std::size_t k = static_cast<std::size_t>((j + step) * ringed + i + step);
+            const auto across = static_cast<std::size_t>(step), down = static_cast<std::size_t>(step * ringed);
+            const glm::dvec3& n = normal[k];
             glm::dvec3 t =
-                glm::normalize(glm::cross(place(at(1, 0)) - place(at(-1, 0)), place(at(0, 1)) - place(at(0, -1))));
+                glm::normalize(glm::cross(place[k + across] - place[k - across], place[k + down] - place[k - down]));
             if (glm::dot(t, n) < 0) t = -t;
             // The gradient as a vector along the ground: exaggeration scales it, and normalizing n + offset gives t back.
             const glm::dvec3 offset = t / std::max(glm::dot(t, n), 0.05) - n;
             std::int16_t* texel = texels + (j * patch_side + i) * 4;
-            for (int k = 0; k < 3; ++k)
-                texel[k] = static_cast<std::int16_t>(
-                    std::lround(std::clamp(offset[k] / static_cast<double>(patch_range), -1.0, 1.0) * 32767));
+            for (int c = 0; c < 3; ++c)
+                texel[c] = static_cast<std::int16_t>(
+                    std::lround(std::clamp(offset[c] / static_cast<double>(patch_range), -1.0, 1.0) * 32767));
             texel[3] = 32767;
         }
 }
@@ -75,8 +82,7 @@ void halve(const std::int16_t* fine, int n, std::int16_t* coarse, int m) {
 
 }  // namespace
 
-void ReliefPatches::build(const planet::Segments& segments, const SurfaceHeights& heights, double radius_m,
-                          int threads) {
+void ReliefPatches::build(const planet::Segments& segments, const PatchSurface& surface, double radius_m, int threads) {
     layers_.clear();
     std::vector<planet::LocationCode> codes;
     std::unordered_map<std::uint64_t, std::int32_t> layer_of;
@@ -99,7 +105,7 @@ void ReliefPatches::build(const planet::Segments& segments, const SurfaceHeights
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
         for (std::size_t p = next++; p < count_; p = next++) {
-            make_patch(codes[p], heights, radius_m, levels_[0].data() + p * patch_side * patch_side * 4);
+            make_patch(codes[p], surface, radius_m, levels_[0].data() + p * patch_side * patch_side * 4);
             for (std::size_t l = 1; l < levels_.size(); ++l) {
                 const int n = patch_side >> (l - 1), m = patch_side >> l;
                 halve(levels_[l - 1].data() + p * static_cast<std::size_t>(n * n) * 4, n,

@@ -16,13 +16,18 @@ namespace render {
 inline constexpr int patch_side = 65;
 inline constexpr float patch_range = 4;  ///< slopes to 76 degrees
 
-/// Heights, metres, at unit normals; finite. Must be safe from several threads.
-using SurfaceHeights = std::function<void(std::span<const glm::dvec3>, std::span<float>)>;
+/// The finest surface. Both must be safe from several threads.
+struct PatchSurface {
+    /// Heights, metres, at unit normals; finite.
+    std::function<void(std::span<const glm::dvec3>, std::span<float>)> heights;
+    /// Distance between its vertices at a unit normal, metres.
+    std::function<double(const glm::dvec3&)> spacing;
+};
 
 class ReliefPatches {
   public:
     /// Makes the patches of all detailed segments. @param radius_m of the planet
-    void build(const planet::Segments& segments, const SurfaceHeights& heights, double radius_m, int threads);
+    void build(const planet::Segments& segments, const PatchSurface& surface, double radius_m, int threads);
 
     /// By segment: the layer, or -1.
     std::span<const std::int32_t> layers() const { return layers_; }

@@ -8,11 +8,10 @@ in vec3 barycentric;
 flat in int level;
 layout(location = 0) out vec4 color;
 
-/// One colour a level: neighbours differ in hue, every second one (a quadtree level) in lightness too.
+/// One colour a bisection level: the hue turns by a little over a quarter, so neighbours differ and none returns soon.
 vec3 level_color(int l) {
-    float hue = fract(float(l) * 0.381966);
-    vec3 wheel = 0.5 + 0.5 * cos(6.2831853 * (hue + vec3(0.0, 0.33, 0.67)));
-    return mix(wheel, vec3((l & 1) == 0 ? 0.95 : 0.25), 0.15);
+    vec3 wheel = clamp(abs(fract(float(l) * 0.2847 + vec3(0.0, 0.6667, 0.3333)) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
+    return mix(vec3(0.92), wheel, 0.78);
 }
 
 /// Coverage of a line `width` pixels wide at distance |d| in the units of d. @param slope |gradient of d| per pixel

@@ -12,6 +12,7 @@
 #include "planet/octahedron/octahedron_map.h"
 #include "planet/store/coverage.h"
 #include "planet/store/tile_cache.h"
+#include "planet/store/tile_codec.h"
 #include "planet/store/tile_sides.h"
 
 namespace planet {
@@ -240,7 +241,7 @@ TEST(Bake, CoarseHeightsAreTheFineOnes) {
             ASSERT_EQ(std::fmod(tile.height[v], 0.25f), 0.0f);
             GeoidUndulation N;
             testing::bumpy_undulation({&normals[v], 1}, {&N, 1});
-            ASSERT_NEAR(tile.undulation[v].m, N.m, 0.5 / 128 + 1e-3);
+            ASSERT_NEAR(tile.undulation[v].m, N.m, 0.5 * undulation_quantum_m + 1e-3);
         }
     }
 }

@@ -44,7 +44,11 @@ class BallTiles final : public TileSource {
         Tile t;
         t.root = root;
         t.depth = std::min(tile_levels, finest_ - root.bisection_level());
-        if (finest_ > root.bisection_level() + tile_levels) t.child_exists.set();
+        if (const int below = root.bisection_level() + tile_levels; finest_ > below) {
+            t.child_exists.set();
+            t.child_deviation.assign(tile_cells, deviation_.at(below));
+            t.child_radius.assign(tile_cells, radius_.at(below));
+        }
         const auto normals = tile_normals(root, t.depth);
         for (const auto& n : normals) t.height.push_back(height_ ? static_cast<float>(height_(n)) : 0.0f);
         t.deviation.resize(std::size_t{1} << t.depth);

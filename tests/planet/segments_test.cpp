@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <tuple>
 
 #include "ball_tiles.h"
@@ -82,14 +83,46 @@ TEST(Segments, DoNotDependOnThreads) {
     EXPECT_TRUE(std::equal(one.indices().begin(), one.indices().end(), four.indices().begin(), four.indices().end()));
 }
 
+// What a tile knows of the roots below must never say "leaf" where the tile below says "split": that would be a crack.
+TEST(PlacedTile, BoundsOfChildrenPassWhateverTheChildPasses) {
+    for (const double exaggeration : {1.0, 5.0}) {
+        const BallTiles tiles(26, 0.001, hills, exaggeration);
+        std::mt19937_64 random(5);
+        std::uniform_real_distribution<double> unit(-1, 1);
+        std::size_t split = 0, kept_out = 0;
+        for (int i = 0; i < 400; ++i) {
+            const PlacedTile& face = *tiles.tile(LocationCode::face_root(i & 7));
+            const auto k = static_cast<unsigned>(random() % tile_cells);
+            const PlacedTile& child = *face.child(tiles, k);
+            const SplitRecord& s = child.split[1];
+            const glm::dvec3 m(s.x, s.y, s.z);
+            const glm::dvec3 away = glm::normalize(glm::dvec3(unit(random), unit(random), unit(random)));
+            // Just inside the reach of the exact test, and far outside.
+            SplitTest test{{}, 1000 * (1 + unit(random))};
+            const double reach = static_cast<double>(s.radius) + test.K * static_cast<double>(s.deviation);
+            test.eye = m + away * (reach * 0.9999999);
+            ASSERT_TRUE(test(s));
+            ASSERT_NE(face.child(tiles, k, test), nullptr);
+            ++split;
+            test.eye = m + away * (reach * 1.1 + 2e4);
+            kept_out += face.child(tiles, k, test) == nullptr;
+        }
+        EXPECT_EQ(split, 400u);
+        EXPECT_GT(kept_out, 350u);
+    }
+}
+
 // u, v name the vertex's place on its patch: walking there from the patch's corners gives the same direction.
 TEST(Segments, PatchCoordinatesLeadToTheVertex) {
     const BallTiles tiles(30, 0.001);  // a smooth ellipsoid: the grid position gives the direction back
     Segments segments;
-    segments.build(tiles, view_at(40, -105, 2e4, 200));
-    std::size_t tested = 0;
+    SegmentView view = view_at(40, -105, 2e4, 200);
+    view.finest_patch_level = 20;  // a child tile's corner of the lattice lies above some roots' tiles, below others
+    segments.build(tiles, view);
+    std::size_t tested = 0, above = 0;
     for (const Segment& s : segments.segments()) {
-        EXPECT_EQ(s.patch, diamond(s.root));
+        EXPECT_EQ(s.patch, diamond(s.root.ancestor(std::min(20, s.root.bisection_level()))));
+        above += s.root.bisection_level() > 20;
         const Corners c = corners(s.patch), far = corners(neighbor(s.patch));
         const std::uint32_t end = s.first_index + s.index_count;
         for (std::uint32_t i = s.first_index; i < end; i += 7) {
@@ -110,6 +143,7 @@ TEST(Segments, PatchCoordinatesLeadToTheVertex) {
         }
     }
     EXPECT_GT(tested, 1000u);
+    EXPECT_GT(above, 10u);
 }
 
 // Culling never removes a triangle that the view shows, whatever is in front.

@@ -54,7 +54,10 @@ GDALRasterBand& height_band(GDALDataset& dataset, const std::string& path) {
                     "has " + std::to_string(n) + " bands" + (colour ? ": a colour picture, not elevation" : ""),
                     one_band);
     }
-    if (band.GetColorInterpretation() == GCI_PaletteIndex)
+    // GDAL gives every band of one bit a palette of black and white: such a mask is values all the same.
+    const char* bits = band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
+    const bool one_bit = bits && std::string_view(bits) == "1";
+    if (band.GetColorInterpretation() == GCI_PaletteIndex && !one_bit)
         throw Error(Fault::bad_data, path, "holds palette colours, not elevation", one_band);
     if (GDALDataTypeIsComplex(band.GetRasterDataType()))
         throw Error(Fault::bad_data, path, "holds complex numbers", one_band);
