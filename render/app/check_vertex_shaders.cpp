@@ -13,6 +13,7 @@
 #include "planet/error.h"
 #include "planet/geodesy/ellipsoid.h"
 #include "render/app/check_parts.h"
+#include "render/gl/context.h"
 #include "render/gl/framebuffer.h"
 #include "render/passes/terrain.h"
 
@@ -75,11 +76,19 @@ class Capture {
     Buffer input_, output_;
 };
 
-/// Worst figures of all views from one height.
+/// Worst figures of all views from one height. Counts are of all vertices; distances are of those that no planet hides.
 struct Worst {
     double vertices = 0, misrounded = 0, different = 0;
     double farthest_m = 0, off_m = 0, off_px = 0;
 };
+
+constexpr double highest_m = 9e3;  // of terrain above the ellipsoid
+
+/// How far the highest terrain can be seen, m: to the horizon, and from there to a mountain behind it.
+double sight(const glm::dvec3& eye) {
+    const double ball2 = planet::wgs84.b * planet::wgs84.b, top = planet::wgs84.a + highest_m;
+    return std::sqrt(glm::dot(eye, eye) - ball2) + std::sqrt(top * top - ball2);
+}
 
 /// Keeps a NaN, so that one fails.
 void raise(double& worst, double value) {
@@ -128,7 +137,7 @@ class Positions {
     }
 
   private:
-    static constexpr double reach = planet::wgs84.a + 9e3;  // m from the centre: above all terrain
+    static constexpr double reach = planet::wgs84.a + highest_m;  // from the centre
     const Camera& camera_;
 };
 
@@ -165,11 +174,14 @@ class Checker {
         }
         const auto terrain = terrain_.run<Drawn>(camera, grid);
         const auto overlay = overlay_.run<glm::vec4>(camera, grid);
+        const double far = sight(camera.eye);
         for (std::size_t i = 0; i < points_in_view; ++i) {
-            const glm::dvec3 from_eye = exact[i] - camera.eye;
             worst.misrounded += misrounded(terrain[i], grid[i], camera);
             worst.different += !same_bits(terrain[i].clip, overlay[i]);
-            worst.farthest_m = std::max(worst.farthest_m, glm::length(from_eye));
+            const glm::dvec3 from_eye = exact[i] - camera.eye;
+            const double distance = glm::length(from_eye);
+            if (distance > far) continue;
+            worst.farthest_m = std::max(worst.farthest_m, distance);
             raise(worst.off_m, glm::distance(glm::dvec3(terrain[i].view), from_eye));
             raise(worst.off_px, glm::distance(pixel_from_clip(terrain[i].clip), pixel_from_ecef(camera, from_eye)));
         }

@@ -160,8 +160,8 @@ TEST(Camera, CullingAgreesWithClip) {
                 const glm::dvec4 clip = glm::dmat4(clip_from_ecef) * glm::dvec4(to, 1);
                 const double margin = std::max(std::abs(clip.x), std::abs(clip.y)) - clip.w;  // < 0: in the pyramid
                 const bool hides = culling.hidden(camera.eye + to, 0);
-                if (margin < -1e-4 * glm::length(to)) EXPECT_FALSE(hides);
-                if (margin > 1e-4 * glm::length(to)) EXPECT_TRUE(hides);
+                EXPECT_FALSE(hides && margin < -1e-4 * glm::length(to));
+                EXPECT_FALSE(!hides && margin > 1e-4 * glm::length(to));
                 ++(hides ? hidden : shown);
             }
         }
@@ -207,8 +207,8 @@ TEST(Camera, CullingHidesWhatIsBehindThePlanet) {
             const double miss2 = glm::dot(camera.eye, camera.eye) - along * along;
             const bool behind = along > 0 && miss2 < ball * ball && glm::distance(p, camera.eye) > along;
             const bool hides = culling.hidden(p, 0);
-            if (hides) EXPECT_TRUE(behind) << i;
-            if (behind && miss2 < 0.9999 * ball * ball) EXPECT_TRUE(hides) << i;
+            EXPECT_FALSE(hides && !behind) << i;
+            EXPECT_FALSE(!hides && behind && miss2 < 0.9999 * ball * ball) << i;
             ++(hides ? hidden : shown);
         }
     }

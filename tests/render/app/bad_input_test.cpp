@@ -108,9 +108,9 @@ TEST_P(BadElevation, IsRefusedByRender) {
     const ScratchFolder cache;
     const ScratchVariable variable("XDG_CACHE_HOME", cache.path().c_str());
     expect_refused("render --size 64x64 -o r.png --json r.json --elevation bad.tif", "bad.tif");
-    if (fs::exists(cache / "octaglobe"))
-        for (const auto& entry : fs::directory_iterator(cache / "octaglobe"))
-            EXPECT_EQ(entry.path().filename(), "checksums");
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(cache / "octaglobe", none))
+        EXPECT_EQ(entry.path().filename(), "checksums");
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, BadElevation, testing::ValuesIn(bad_elevations),
