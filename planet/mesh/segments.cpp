@@ -33,16 +33,17 @@ class RootCollector {
             if (child)
                 cell(*child, 1);
             else
-                roots_.push_back({&t, i, distance_to(t.split[i >> 1])});
+                roots_.push_back({&t, i, distance_to(t.split[i >> 1], radius_of(t, i >> 1))});
             return;
         }
         const SplitRecord& s = t.split[i];
         const glm::dvec3 m(s.x, s.y, s.z);
-        if (view_.culling.hidden(m, static_cast<double>(s.radius))) return;
+        const double radius = radius_of(t, i);
+        if (view_.culling.hidden(m, radius)) return;
         const double leg = cell_metrics(code_of(t, i).bisection_level()).split_max * view_.radius_m / std::sqrt(2.0);
         const double reach = glm::distance(m, view_.test.eye) - leg;
         if (!view_.test(s) || leg < view_.segment_angle * reach) {
-            roots_.push_back({&t, i, distance_to(s)});
+            roots_.push_back({&t, i, distance_to(s, radius)});
             return;
         }
         cell(t, 2 * i);
@@ -50,8 +51,18 @@ class RootCollector {
     }
 
   private:
-    double distance_to(const SplitRecord& s) const {
-        return std::max(0.0, glm::distance(glm::dvec3(s.x, s.y, s.z), view_.test.eye) - static_cast<double>(s.radius));
+    // Everything in a cell is within this of its split vertex. A diamond that does not exist has no radius: its cells
+    // are flat, and their corners are the farthest.
+    double radius_of(const PlacedTile& t, unsigned i) const {
+        const SplitRecord& s = t.split[i];
+        if (s.deviation > 0) return static_cast<double>(s.radius);
+        double reach = 0;
+        for (const std::uint16_t corner : tile_layout().corners[i])
+            reach = std::max(reach, glm::distance(glm::dvec3(s.x, s.y, s.z), ecef_from_grid(t.position[corner])));
+        return reach;
+    }
+    double distance_to(const SplitRecord& s, double radius) const {
+        return std::max(0.0, glm::distance(glm::dvec3(s.x, s.y, s.z), view_.test.eye) - radius);
     }
 
     const TileSource& tiles_;
