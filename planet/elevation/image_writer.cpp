@@ -70,7 +70,7 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height, int cha
     SinkDescription d{format_of(path), {}, path, width, height, channels, type, options};
     check(path, d);
     std::error_code failed;
-    state_->file = std::filesystem::weakly_canonical(path, failed);  // a link stays one
+    state_->file = std::filesystem::weakly_canonical(std::filesystem::absolute(path), failed);  // a link stays one
     if (failed) state_->file = path;
     const auto status = std::filesystem::status(state_->file, failed);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))

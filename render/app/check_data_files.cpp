@@ -29,14 +29,15 @@ planet::CheckRow check_line(const fs::path& sums, const std::string& line, std::
 
 }  // namespace
 
-std::vector<planet::CheckRow> check_data_files() {
+CheckPart check_data_files() {
     const fs::path sums = data_file("SHA256SUMS");
     std::ifstream in(sums);
-    std::vector<planet::CheckRow> rows;
+    CheckPart part;
+    auto& rows = part.rows;
     for (std::string line; std::getline(in, line);) rows.push_back(check_line(sums, line, rows.size() + 1));
     if (rows.empty())
         throw planet::Error(planet::Fault::bad_data, sums.native(), "names no file", "the output of sha256sum");
-    return rows;
+    return part;
 }
 
 }  // namespace render

@@ -16,14 +16,23 @@
 namespace render {
 namespace {
 
-/// A further part is a function that returns rows, and a line here.
+/// A further part is a function of check_parts.h, and a line here.
 struct Part {
     const char* name;
-    std::vector<planet::CheckRow> (*rows)();
+    CheckPart (*measure)(Progress& progress);
 };
 constexpr Part parts[] = {
-    {"positions", [] { return planet::check_positions(planet::wgs84); }},
-    {"data", check_data_files},
+    {"positions",
+     [](Progress&) {
+         return CheckPart{planet::check_positions(planet::wgs84), {}};
+     }},
+    {"grid", [](Progress&) { return check_grid(); }},
+    {"vertex shaders", [](Progress&) { return check_vertex_shaders(); }},
+    {"meshes",
+     [](Progress& progress) {
+         return check_meshes([&](std::string_view step, double fraction) { progress.update(step, fraction); });
+     }},
+    {"data", [](Progress&) { return check_data_files(); }},
 };
 
 /// Three significant digits, without a locale.
@@ -50,37 +59,44 @@ nlohmann::ordered_json json_from_rows(const std::vector<planet::CheckRow>& rows)
     return list;
 }
 
-/// @param reasons gets a line for each part that could not be measured
-std::vector<planet::CheckRow> all_rows(Report& report, std::vector<std::string>& reasons) {
-    Progress progress;
+struct Certificate {
     std::vector<planet::CheckRow> rows;
+    std::vector<std::string> reasons;  ///< a line for each part that could not be measured
+    std::vector<std::string> skipped;  ///< a line for each that this machine has no means for
+};
+
+Certificate measure(Report& report) {
+    Progress progress;
+    Certificate all;
     for (const Part& part : parts) {
         progress.update(part.name, std::nan(""));
         const auto step = report.step(part.name);
         try {
-            const auto more = part.rows();
-            rows.insert(rows.end(), more.begin(), more.end());
+            const CheckPart more = part.measure(progress);
+            all.rows.insert(all.rows.end(), more.rows.begin(), more.rows.end());
+            if (!more.skipped.empty()) all.skipped.push_back(more.skipped);
         } catch (const planet::Error& error) {
             // What cannot be measured does not hold; the rest of the certificate is still worth having.
-            rows.push_back(planet::check_row(part.name + std::string(" could not be checked"), 1, 0, "failure"));
-            reasons.push_back(error.what());
+            all.rows.push_back(planet::check_row(part.name + std::string(" could not be checked"), 1, 0, "failure"));
+            all.reasons.push_back(error.what());
         }
     }
-    return rows;
+    return all;
 }
 
 void run(const std::string& json) {
     Report report("check", json);
-    std::vector<std::string> reasons;
-    const auto rows = all_rows(report, reasons);
+    const auto [rows, reasons, skipped] = measure(report);
     const auto failed = std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !row.passed; });
     print(rows);
     for (const auto& reason : reasons) std::cout << reason << '\n';
+    for (const auto& line : skipped) std::cout << "skipped: " << line << '\n';
     report.set("checks", rows.size());
     report.set("failed", failed);
     report.set("passed", failed == 0);
     report.set("rows", json_from_rows(rows));
     report.set("reasons", reasons);
+    report.set("skipped", skipped);
     report.write();
     if (failed > 0)
         throw planet::Error(planet::Fault::check_failed, "check",

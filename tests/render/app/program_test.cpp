@@ -1,58 +1,20 @@
 // The program as a user meets it: exit status, one line on standard error, no file left behind.
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "tests/render/app/scratch_folder.h"
+#include "tests/render/app/program_process.h"
 
 namespace render {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Outcome {
-    int status = -1;  ///< 128 + the signal if it was killed
-    std::string out, err;
-};
-
-/// Runs the program with these arguments in a folder; its streams go to files outside that folder.
-Outcome run(const fs::path& folder, const std::vector<std::string>& arguments) {
-    const ScratchFolder streams;
-    const std::string out = streams / "out", err = streams / "err";
-    const pid_t child = ::fork();
-    if (child == 0) {
-        const auto redirect = [](const std::string& path, int stream) {
-            const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-            return file >= 0 && ::dup2(file, stream) == stream;
-        };
-        if (::chdir(folder.c_str()) != 0 || !redirect(out, STDOUT_FILENO) || !redirect(err, STDERR_FILENO)) ::_exit(99);
-        std::vector<char*> argv{const_cast<char*>(OCTAGLOBE_PROGRAM)};
-        for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-        argv.push_back(nullptr);
-        ::execv(OCTAGLOBE_PROGRAM, argv.data());
-        ::_exit(98);
-    }
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), content(out), content(err)};
-}
-
-std::vector<std::string> words(const std::string& line) {
-    std::vector<std::string> words;
-    std::istringstream in(line);
-    for (std::string word; in >> word;) words.push_back(word == "''" ? "" : word);
-    return words;
-}
 
 struct BadCall {
     const char* arguments;  ///< separated by blanks; '' is an empty one
@@ -199,43 +161,74 @@ TEST(Program, FullStandardOutputIsAnError) {
     EXPECT_EQ(WEXITSTATUS(std::system(call.c_str())), 2);
 }
 
-// A data folder with one shipped file, so that the check does not depend on what this machine has.
+// The shipped data, by links, with one file more whose content a test may change.
 class Certificate : public testing::Test {
   protected:
     Certificate() {
-        std::ofstream(folder_ / "a.txt") << "abc";
-        std::ofstream(folder_ / "SHA256SUMS")
+        const fs::path shipped = OCTAGLOBE_SOURCE_DIR "/data";
+        for (const auto& entry : fs::directory_iterator(shipped))
+            if (entry.path().filename() != "SHA256SUMS")
+                fs::create_symlink(entry.path(), data_.path() / entry.path().filename());
+        std::ofstream(data_ / "a.txt") << "abc";
+        std::ofstream(data_ / "SHA256SUMS")
+            << content(shipped / "SHA256SUMS")
             << "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad  a.txt\n";
     }
-    Outcome check() const {
-        const ScratchVariable data("OCTAGLOBE_DATA", folder_.path().c_str());
-        return run(folder_.path(), words("check --json check.json"));
+    void check() {
+        const ScratchVariable data("OCTAGLOBE_DATA", data_.path().c_str());
+        const ScratchFolder folder;
+        outcome_ = run(folder.path(), words("check --json check.json"));
+        json_ = nlohmann::json::parse(content(folder / "check.json"));
+        EXPECT_EQ(json_.at("checks"), json_.at("rows").size());
+        EXPECT_EQ(json_.at("passed"), outcome_.status == 0);
     }
-    ScratchFolder folder_;
+    /// How many rows have names that begin so.
+    long rows(std::string_view beginning) const {
+        const auto& rows = json_.at("rows");
+        return std::count_if(rows.begin(), rows.end(), [&](const auto& row) {
+            return row.at("name").template get<std::string>().starts_with(beginning);
+        });
+    }
+    ScratchFolder data_;
+    Outcome outcome_;
+    nlohmann::json json_;
 };
 
 TEST_F(Certificate, HoldsOnIntactData) {
-    const Outcome outcome = check();
-    EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
-    const auto json = nlohmann::json::parse(content(folder_ / "check.json"));
-    EXPECT_EQ(json.at("passed"), true);
-    EXPECT_EQ(json.at("checks"), json.at("rows").size());
-    EXPECT_GT(json.at("rows").size(), 3u);
+    check();
+    EXPECT_EQ(outcome_.status, 0) << outcome_.out << outcome_.err;
+    EXPECT_EQ(json_.at("passed"), true);
+    for (const char* part : {"vertex position ", "grid ", "drawn ", "mesh ", "checksum of "})
+        EXPECT_GT(rows(part), json_.at("skipped").empty() || std::string_view(part) != "drawn " ? 0 : -1) << part;
 }
 
 TEST_F(Certificate, FailsOnOneChangedByte) {
-    std::ofstream(folder_ / "a.txt") << "abd";
-    const Outcome outcome = check();
-    EXPECT_EQ(outcome.status, 1);
-    EXPECT_TRUE(outcome.err.starts_with("octaglobe: check: 1 of ")) << outcome.err;
-    const auto json = nlohmann::json::parse(content(folder_ / "check.json"));
-    EXPECT_EQ(json.at("failed"), 1);
-    EXPECT_NE(outcome.out.find("a.txt"), std::string::npos);
+    std::ofstream(data_ / "a.txt") << "abd";
+    check();
+    EXPECT_EQ(outcome_.status, 1);
+    EXPECT_TRUE(outcome_.err.starts_with("octaglobe: check: 1 of ")) << outcome_.err;
+    EXPECT_EQ(json_.at("failed"), 1);
+    EXPECT_NE(outcome_.out.find("a.txt"), std::string::npos);
 }
 
-TEST_F(Certificate, FailsWithoutData) {
-    fs::remove(folder_ / "SHA256SUMS");
-    EXPECT_EQ(check().status, 1);
+TEST_F(Certificate, FailsWithoutChecksums) {
+    fs::remove(data_ / "SHA256SUMS");
+    check();
+    EXPECT_EQ(outcome_.status, 1);
+    EXPECT_EQ(json_.at("reasons").size(), 1u);
+}
+
+// No OpenGL is no failure: what needs it is skipped, and says why; all else is measured.
+TEST_F(Certificate, SkipsDrawingWithoutOpenGl) {
+    const ScratchVariable egl("OCTAGLOBE_EGL_LIBRARY", "/nonexistent/libEGL.so");
+    const ScratchVariable osmesa("OCTAGLOBE_OSMESA_LIBRARY", "/nonexistent/libOSMesa.so");
+    check();
+    EXPECT_EQ(outcome_.status, 0) << outcome_.out << outcome_.err;
+    EXPECT_EQ(rows("drawn "), 0);
+    EXPECT_GT(rows("mesh "), 0);
+    ASSERT_EQ(json_.at("skipped").size(), 1u);
+    EXPECT_NE(json_.at("skipped")[0].get<std::string>().find("/nonexistent/"), std::string::npos);
+    EXPECT_NE(outcome_.out.find("skipped: drawn positions: "), std::string::npos);
 }
 
 }  // namespace

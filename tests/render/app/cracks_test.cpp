@@ -1,0 +1,265 @@
+// No cracks, seen: the default Earth's segments, through the vertex shader pictures are drawn with, in white on magenta.
+//
+// What is tested, in every view and pixel for pixel:
+//   ball      a pixel whose ray meets a ball that lies below all terrain is not magenta. Exact, and what counts for
+//             eyes inside the planet, where it holds for every pixel
+//   regions   every magenta region reaches the picture's border. Terrain is a height field, so sky that is enclosed by
+//             terrain is a hole (an eye above it, nothing overhangs). This covers the belt between ball and terrain;
+//             a crack that opens into the sky is not seen by it
+// A crack narrower than a pixel shows in some pixels of some views: the views are many.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "planet/error.h"
+#include "planet/geodesy/geodetic.h"
+#include "planet/mesh/segments.h"
+#include "planet/store/store_field.h"
+#include "planet/store/store_tiles.h"
+#include "render/app/earth_store.h"
+#include "render/gl/context.h"
+#include "render/gl/framebuffer.h"
+#include "render/passes/terrain.h"
+
+namespace render {
+namespace {
+
+using planet::degrees;
+using planet::wgs84;
+
+constexpr int side = 256;  // of the pictures, pixels
+
+struct View {
+    Camera camera;
+    double exaggeration;
+    bool inside;  // the planet
+};
+
+/// The default Earth with its heights exaggerated.
+class Terrain {
+  public:
+    Terrain(std::shared_ptr<const planet::ElevationStore> store, double exaggeration)
+        : field_(store), tiles_(field_.cache(), {wgs84, exaggeration}) {
+        double lowest = 0;
+        for (int face = 0; face < planet::face_count; ++face)
+            lowest = std::min(
+                lowest, static_cast<double>(field_.cache().tile(planet::LocationCode::face_root(face))->min_height));
+        // 400 m for the geoid and for the sides of triangles, which run below the ground.
+        ball_ = wgs84.b + lowest * exaggeration - 400;
+    }
+    const planet::StoreField& field() const { return field_; }
+    const planet::StoreTiles& tiles() const { return tiles_; }
+    double ball() const { return ball_; }
+
+  private:
+    planet::StoreField field_;
+    planet::StoreTiles tiles_;
+    double ball_;
+};
+
+std::optional<std::string_view> white_or_real(std::string_view name) {
+    if (name == "white.frag.glsl") return "#version 450 core\nout vec4 color;\nvoid main() { color = vec4(1.0); }\n";
+    return find_shader_source(name);
+}
+
+class WhitePass {
+  public:
+    void begin(const Camera& camera, bool cull_faces) {
+        target_.bind();
+        target_.clear(1, 0, 1, 1);
+        program_.use();
+        set_grid_camera(program_, camera, {0, 0, side, side});
+        gl().Enable(GL_DEPTH_TEST);
+        gl().DepthFunc(GL_GREATER);
+        (cull_faces ? gl().Enable : gl().Disable)(GL_CULL_FACE);
+    }
+    template <class Wanted>
+    void draw(const planet::Segments& segments, Wanted wanted) {
+        const Buffer vertices(bytes_of(segments.vertices())), indices(bytes_of(segments.indices()));
+        VertexArray array = VertexArray::create();
+        array.set_vertices(0, vertices, sizeof(planet::SegmentVertex), grid_attributes());
+        array.set_indices(indices);
+        array.bind();
+        for (const planet::Segment& s : segments.segments())
+            if (wanted(s))
+                gl().DrawElementsBaseVertex(GL_TRIANGLE_STRIP, static_cast<GLsizei>(s.index_count), GL_UNSIGNED_INT,
+                                            reinterpret_cast<const void*>(std::size_t{s.first_index} * 4),
+                                            static_cast<GLint>(s.first_vertex));
+    }
+    /// Magenta or not, by pixel, the top row first.
+    std::vector<bool> magenta() const {
+        const auto rgba = target_.read_rgba8();
+        std::vector<bool> result(side * side);
+        for (std::size_t i = 0; i < result.size(); ++i) result[i] = rgba[4 * i + 1] == 0;
+        return result;
+    }
+    std::vector<bool> magenta(const planet::Segments& segments, const Camera& camera, bool cull_faces) {
+        begin(camera, cull_faces);
+        draw(segments, [](const planet::Segment&) { return true; });
+        return magenta();
+    }
+
+  private:
+    Program program_ = Program::link({"terrain.vert.glsl", "white.frag.glsl"}, {.find = white_or_real});
+    Framebuffer target_{side, side};
+};
+
+std::size_t index_of(int x, int y) {
+    return static_cast<std::size_t>(y) * side + static_cast<std::size_t>(x);
+}
+
+/// Pixels whose ray meets the ball although they are magenta.
+std::size_t holes_in_ball(const std::vector<bool>& magenta, const Camera& camera, double ball) {
+    std::size_t holes = 0;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const glm::dvec3 view(x + 0.5 - 0.5 * side, 0.5 * side - y - 0.5, -camera.focal_px);
+            const glm::dvec3 ray = glm::normalize(glm::transpose(camera.view_from_ecef) * view);
+            const double along = -glm::dot(camera.eye, ray), eye2 = glm::dot(camera.eye, camera.eye);
+            const bool meets = eye2 < ball * ball || (along > 0 && eye2 - along * along < ball * ball);
+            holes += meets && magenta[index_of(x, y)];
+        }
+    return holes;
+}
+
+/// Magenta pixels that no path of magenta pixels, side by side or corner to corner, joins to the border.
+std::size_t enclosed(std::vector<bool> magenta) {
+    std::vector<std::pair<int, int>> open;
+    const auto take = [&](int x, int y) {
+        if (x < 0 || y < 0 || x >= side || y >= side || !magenta[index_of(x, y)]) return;
+        magenta[index_of(x, y)] = false;
+        open.emplace_back(x, y);
+    };
+    for (int i = 0; i < side; ++i) take(i, 0), take(i, side - 1), take(0, i), take(side - 1, i);
+    while (!open.empty()) {
+        const auto [x, y] = open.back();
+        open.pop_back();
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx) take(x + dx, y + dy);
+    }
+    return static_cast<std::size_t>(std::count(magenta.begin(), magenta.end(), true));
+}
+
+class Views {
+  public:
+    View next(std::size_t i, const Terrain& terrain, double exaggeration) {
+        // Every fourth near the finest data, every fourth inside the planet, the others anywhere, seams first.
+        constexpr double seams[][2] = {{90, 0},  {-90, 0},  {0, 0},   {0, 90},  {0, 180},
+                                       {0, -90}, {30, 180}, {45, 90}, {-60, 0}, {89.99, 45}};
+        double latitude = std::asin(between(-1, 1)) / degrees, longitude = between(-180, 180);
+        if (i % 4 == 0) latitude = between(37, 38.5), longitude = between(-106.5, -104.5);
+        if (i % 4 != 0 && i / 2 < std::size(seams)) latitude = seams[i / 2][0], longitude = seams[i / 2][1];
+        const glm::dvec3 normal = planet::normal_from_geodetic(latitude * degrees, longitude * degrees);
+        const bool inside = i % 4 == 3;
+        const double ground = static_cast<double>(terrain.field().height(normal)) * exaggeration + 110;
+        const double h = inside ? -std::exp2(between(15, 22)) : ground + std::exp2(between(1, i % 4 == 0 ? 17 : 25));
+        const double dip = inside ? 0 : std::acos(wgs84.b / (wgs84.b + std::max(h, 0.0))) / degrees;
+        const double pitch = inside ? between(-90, 90) : -between(dip, std::min(90.0, dip + 40));
+        const double fov = between(20, 100);
+        return {make_camera(planet::ecef_from_normal(wgs84, normal, {h}), normal, between(0, 360) * degrees,
+                            pitch * degrees, focal_length_px(fov * degrees, side, side), side, side),
+                exaggeration, inside};
+    }
+
+  private:
+    double between(double low, double high) {
+        return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+    }
+    std::mt19937_64 engine_{3};
+};
+
+planet::SegmentView segment_view(const Camera& camera, double ball) {
+    planet::SegmentView view;
+    view.test = {camera.eye, planet::split_reach(camera.focal_px, camera.tan_corner(), 0.5)};
+    view.culling = camera.culling({0, 0, side, side}, ball);
+    view.radius_m = wgs84.mean_radius();
+    view.segment_angle = 96 / camera.focal_px;
+    return view;
+}
+
+class Cracks : public testing::Test {
+  protected:
+    void SetUp() override {
+        try {
+            context_.emplace(Context::create());
+        } catch (const planet::Error& error) {
+            GTEST_SKIP() << error.what();
+        }
+        set_reversed_depth();
+        const EarthSources sources;
+        LazyEarth earth(sources);
+        ChecksumIndex index = user_checksum_index();
+        store_ = open_earth_store(sources, earth, index, [](std::string_view, double) {});
+    }
+    std::optional<Context> context_;
+    std::shared_ptr<const planet::ElevationStore> store_;
+};
+
+TEST_F(Cracks, NoneInAnyView) {
+    constexpr std::size_t count = 40;  // for each exaggeration
+    WhitePass pass;
+    planet::Segments segments;
+    std::size_t sky = 0, ground = 0;
+    for (const double exaggeration : {1.0, 5.0}) {
+        const Terrain terrain(store_, exaggeration);
+        Views views;
+        for (std::size_t i = 0; i < count; ++i) {
+            const View view = views.next(i, terrain, exaggeration);
+            segments.build(terrain.tiles(), segment_view(view.camera, terrain.ball()), 2);
+            const auto magenta = pass.magenta(segments, view.camera, !view.inside);
+            EXPECT_EQ(holes_in_ball(magenta, view.camera, terrain.ball()), 0u) << "view " << i << ", x" << exaggeration;
+            EXPECT_EQ(enclosed(magenta), 0u) << "view " << i << ", exaggeration " << exaggeration;
+            const auto empty = static_cast<std::size_t>(std::count(magenta.begin(), magenta.end(), true));
+            if (view.inside) {
+                EXPECT_EQ(empty, 0u) << "view " << i;
+            }
+            (empty > 0 && empty < magenta.size() ? sky : ground) += 1;
+        }
+    }
+    EXPECT_GE(sky, 20u);  // views with a silhouette
+    EXPECT_GE(ground, 20u);
+}
+
+// The measures see cracks: meshes of two accuracies side by side do not meet, and a segment left out is a hole.
+TEST_F(Cracks, AreSeenWhereThereAreSome) {
+    const Terrain terrain(store_, 5);
+    const glm::dvec3 normal = planet::normal_from_geodetic(37.5 * degrees, -105.4 * degrees);
+    const Camera camera = make_camera(planet::ecef_from_normal(wgs84, normal, {80e3}), normal, 0, -70 * degrees,
+                                      focal_length_px(40 * degrees, side, side), side, side);
+    planet::SegmentView view = segment_view(camera, terrain.ball());
+    planet::Segments fine, coarse;
+    fine.build(terrain.tiles(), view, 1);
+    view.test.K /= 20;
+    coarse.build(terrain.tiles(), view, 1);
+    const auto in_coarse = [&](const planet::Segment& s) {
+        return std::any_of(coarse.segments().begin(), coarse.segments().end(),
+                           [&](const planet::Segment& c) { return c.root == s.root; });
+    };
+    WhitePass pass;
+    ASSERT_EQ(enclosed(pass.magenta(fine, camera, true)), 0u);
+    ASSERT_EQ(enclosed(pass.magenta(coarse, camera, true)), 0u);
+
+    // Every other segment that both have is drawn coarse.
+    const auto swapped = [&](const planet::Segment& s) { return s.root.bits() % 2 == 0 && in_coarse(s); };
+    pass.begin(camera, true);
+    pass.draw(fine, [&](const planet::Segment& s) { return !swapped(s); });
+    pass.draw(coarse, [&](const planet::Segment& s) {
+        return swapped(s) && std::any_of(fine.segments().begin(), fine.segments().end(),
+                                         [&](const planet::Segment& f) { return f.root == s.root; });
+    });
+    EXPECT_GT(enclosed(pass.magenta()), 0u);
+
+    // The segment in the middle of the picture is left out.
+    const planet::Segment& nearest =
+        *std::min_element(fine.segments().begin(), fine.segments().end(),
+                          [](const auto& a, const auto& b) { return a.distance_m < b.distance_m; });
+    pass.begin(camera, true);
+    pass.draw(fine, [&](const planet::Segment& s) { return s.root != nearest.root; });
+    EXPECT_GT(holes_in_ball(pass.magenta(), camera, terrain.ball()), 0u);
+}
+
+}  // namespace
+}  // namespace render
