@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
+#include <mutex>
 #include <thread>
 
 #include "planet/elevation/image_io.h"
@@ -34,9 +36,10 @@ constexpr int part_side = 2048;
 constexpr double patch_pixels = 96;
 /// A patch of this many bisection levels above the finest has two texels between the vertices of the surface.
 constexpr int finest_patch_above = 10;
+constexpr double highest_ground_m = 9000;
 constexpr std::size_t patch_limit = 1800;
 
-/// Adds up the time of steps, in the order in which they first came.
+/// Adds up the time of steps, also of those that run side by side: their sum can exceed the time of the whole.
 class Steps {
   public:
     template <class Work>
@@ -51,16 +54,73 @@ class Steps {
         } const stop{*this, name};
         return work();
     }
-    std::vector<std::pair<std::string, double>> list;
+    /// Sorted by name: which of two came first is chance.
+    std::vector<std::pair<std::string, double>> list() const {
+        const std::lock_guard lock(mutex_);
+        auto sorted = list_;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted;
+    }
 
   private:
     void add(std::string_view name, double seconds) {
-        const auto found = std::find_if(list.begin(), list.end(), [&](const auto& step) { return step.first == name; });
-        if (found == list.end())
-            list.emplace_back(name, seconds);
+        const std::lock_guard lock(mutex_);
+        const auto found =
+            std::find_if(list_.begin(), list_.end(), [&](const auto& step) { return step.first == name; });
+        if (found == list_.end())
+            list_.emplace_back(name, seconds);
         else
             found->second += seconds;
     }
+
+    mutable std::mutex mutex_;
+    std::vector<std::pair<std::string, double>> list_;
+};
+
+unsigned threads_of(const RenderOptions& options) {
+    return options.threads > 0 ? static_cast<unsigned>(options.threads)
+                               : std::max(1u, std::thread::hardware_concurrency());
+}
+
+/// Starts work beside the calling thread, or with one thread only leaves it until it is asked for. What it throws comes
+/// out of get(); the future's end waits for it, so what it refers to must be declared before the future.
+template <class Work>
+auto beside(unsigned threads, Work work) {
+    return std::async(threads > 1 ? std::launch::async : std::launch::deferred, std::move(work));
+}
+
+/// The output, encoded beside the drawing: one band behind.
+class BandWriter {
+  public:
+    BandWriter(const RenderOptions& options, Steps& steps)
+        : threads_(threads_of(options)),
+          steps_(steps),
+          writer_(options.output.string(), options.size.width, options.size.height, 3, planet::SampleType::uint8) {}
+
+    /// @param band rows of RGB, top down
+    void write(std::vector<std::uint8_t> band, int rows) {
+        if (writing_.valid()) writing_.get();
+        writing_ = beside(threads_, [this, rows, pixels = std::move(band)] {
+            steps_.time("write", [&] { writer_.write_rows(pixels.data(), rows); });
+        });
+    }
+    /// Makes the file appear.
+    void finish() {
+        if (writing_.valid()) writing_.get();
+        steps_.time("write", [&] { writer_.finish(); });
+    }
+
+  private:
+    unsigned threads_;
+    Steps& steps_;
+    planet::ImageWriter writer_;
+    std::future<void> writing_;
+};
+
+/// What a part is drawn from.
+struct PartMesh {
+    planet::Segments segments;
+    ReliefPatches patches;
 };
 
 /// The surface that is drawn.
@@ -120,40 +180,42 @@ Camera camera_for(const RenderOptions& o, const planet::StoreField& field) {
                        o.size.height);
 }
 
-/// All that is the same for every part of the picture.
+/// All that is the same for every part of the picture. Beside the thread of OpenGL, which opens the context, compiles
+/// shaders and uploads, run: the tables that do not depend on the view from the start; the air of the view and the first
+/// part's mesh as soon as there are a store and a camera; then each part's mesh while the part before is drawn.
 class Painter {
   public:
-    Painter(const RenderOptions& options, PictureReport& report)
+    Painter(const RenderOptions& options, PictureReport& report, Steps& steps)
         : options_(options),
           report_(report),
-          threads_(options.threads > 0 ? static_cast<unsigned>(options.threads)
-                                       : std::max(1u, std::thread::hardware_concurrency())),
+          steps_(steps),
+          threads_(threads_of(options)),
+          noise_(beside(threads_, [this] { return steps_.time("noise", [] { return make_noise_levels(); }); })),
+          tables_(beside(threads_, [this] { return steps_.time("air", [] { return make_tables(); }); })),
           context_(steps_.time("context", [&] { return Context::create({.backend = options.backend}); })),
           earth_(options.earth),
           index_(user_checksum_index()),
           surface_(steps_.time("store", [&] { return open_store(); }), options.exaggeration),
           camera_(steps_.time("store", [&] { return camera_for(options, surface_.field); })),
           occluder_radius_(surface_.occluder_radius(options.exaggeration)) {
+        for (int y = 0; y < camera_.height; y += part_side)
+            for (int x = 0; x < camera_.width; x += part_side)
+                parts_.push_back(
+                    {x, y, std::min(part_side, camera_.width - x), std::min(part_side, camera_.height - y)});
+        begin_mesh(0);
         open_looks();
     }
 
-    void paint() {
-        const int columns = (camera_.width + part_side - 1) / part_side,
-                  rows = (camera_.height + part_side - 1) / part_side;
-        planet::ImageWriter writer(options_.output.string(), camera_.width, camera_.height, 3,
-                                   planet::SampleType::uint8);
-        for (int row = 0; row < rows; ++row) {
-            const int y = row * part_side, height = std::min(part_side, camera_.height - y);
-            std::vector<std::uint8_t> band(static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(height) *
-                                           3);
-            for (int column = 0; column < columns; ++column) {
-                const int x = column * part_side;
-                paint_part({x, y, std::min(part_side, camera_.width - x), height}, band);
-                options_.progress("drawing", static_cast<double>(row * columns + column + 1) / (rows * columns));
-            }
-            steps_.time("write", [&] { writer.write_rows(band.data(), height); });
+    void paint(BandWriter& output) {
+        std::vector<std::uint8_t> band;
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            const PicturePart& part = parts_[i];
+            if (part.x == 0) band.resize(static_cast<std::size_t>(camera_.width * part.height) * 3);
+            upload_mesh(i);
+            paint_part(part, band);
+            options_.progress("drawing", static_cast<double>(i + 1) / static_cast<double>(parts_.size()));
+            if (part.x + part.width == camera_.width) output.write(std::exchange(band, {}), part.height);
         }
-        steps_.time("write", [&] { writer.finish(); });
         index_.save();
         fill_report();
     }
@@ -166,6 +228,13 @@ class Painter {
     }
 
     void open_looks() {
+        auto air = beside(threads_, [this] {
+            const AtmosphereTables tables = tables_.get();
+            return steps_.time("air", [&] {
+                return std::pair(tables,
+                                 make_view_table(tables, camera_.eye, planet::sun_direction(options_.time), threads_));
+            });
+        });
         const Imagery imagery = steps_.time("imagery", [&] {
             return open_imagery(
                 options_.imagery, options_.earth, index_, [&] { return earth_.get().heights; }, threads_,
@@ -177,23 +246,31 @@ class Painter {
             relief_ = upload_cube(imagery.relief, GL_RGBA8_SNORM);
         });
         const std::vector<Star> stars = steps_.time("stars", [] { return read_stars(data_file("stars.csv")); });
+        const auto noise = noise_.get();
         steps_.time("shaders", [&] {
             terrain_.emplace();
-            sky_.emplace(stars);
+            sky_.emplace(stars, noise);
             overlay_.emplace(OverlayPass::Show{.mesh = options_.shows(Overlay::mesh),
                                                .levels = options_.shows(Overlay::levels),
                                                .curve = options_.shows(Overlay::curve)});
         });
-        steps_.time("air", [&] {
-            const AtmosphereTables tables = make_tables();
-            ViewTable view = make_view_table(tables, camera_.eye, planet::sun_direction(options_.time), threads_);
-            view.uniforms.sky_detail.w = static_cast<float>(imagery.texel_m(wgs84.mean_radius()));
-            sky_->set_view(tables, view, glm::mat3(planet::ecef_from_j2000(options_.time)));
-        });
+        auto [tables, view] = air.get();
+        view.uniforms.sky_detail.w = static_cast<float>(imagery.texel_m(wgs84.mean_radius()));
+        // The least ground distance and the smallest pixel there can be, at a corner.
+        const double clearance =
+            planet::height_from_ecef(wgs84, camera_.eye).m - highest_ground_m * options_.exaggeration;
+        from_afar_ = !needs_close_up(view.uniforms, std::max(clearance, 0.0),
+                                     1 / (camera_.focal_px * (1 + camera_.tan_corner() * camera_.tan_corner())));
+        sky_->set_view(tables, view, glm::mat3(planet::ecef_from_j2000(options_.time)));
         set_reversed_depth();
     }
 
-    void build_mesh(const PicturePart& part) {
+    /// Starts making the mesh of a part. Two are in use at a time: that one, and the one that is drawn.
+    void begin_mesh(std::size_t i) {
+        if (i < parts_.size()) mesh_ = beside(threads_, [this, i] { build_mesh(parts_[i], meshes_[i & 1]); });
+    }
+
+    void build_mesh(const PicturePart& part, PartMesh& mesh) {
         planet::SegmentView view;
         view.test = {camera_.eye,
                      planet::split_reach(camera_.focal_px, camera_.tan_corner(), options_.max_pixel_deviation)};
@@ -202,32 +279,39 @@ class Painter {
         view.finest_patch_level = std::max(surface_.store->metadata().finest_level - finest_patch_above, 0);
         view.segment_angle = patch_pixels / camera_.focal_px;
         const auto detailed = [&] {
-            return static_cast<std::size_t>(std::count_if(segments_.segments().begin(), segments_.segments().end(),
+            return static_cast<std::size_t>(std::count_if(mesh.segments.segments().begin(),
+                                                          mesh.segments.segments().end(),
                                                           [](const planet::Segment& s) { return s.detailed; }));
         };
         do {
-            steps_.time("mesh", [&] { segments_.build(surface_.tiles, view, static_cast<int>(threads_)); });
+            steps_.time("mesh", [&] { mesh.segments.build(surface_.tiles, view, static_cast<int>(threads_)); });
             view.segment_angle *= 1.5;
         } while (detailed() > patch_limit && view.segment_angle < 10);
         steps_.time("normals", [&] {
-            patches_.build(segments_, surface_.for_patches(), wgs84.mean_radius(), static_cast<int>(threads_));
+            mesh.patches.build(mesh.segments, surface_.for_patches(), wgs84.mean_radius(), static_cast<int>(threads_));
         });
+    }
+
+    void upload_mesh(std::size_t i) {
+        mesh_.get();
+        const planet::Segments& segments = meshes_[i & 1].segments;
+        const ReliefPatches& patches = meshes_[i & 1].patches;
+        begin_mesh(i + 1);
         steps_.time("upload", [&] {
-            terrain_->upload(segments_, patches_.layers());
-            overlay_->upload(segments_);
-            patch_texture_ = patches_.upload();
+            terrain_->upload(segments, patches.layers());
+            overlay_->upload(segments);
+            patch_texture_ = patches.upload();
         });
-        report_.triangles += segments_.leaf_levels().size();
-        report_.vertices += segments_.vertices().size();
-        report_.strip_indices += segments_.indices().size();
-        report_.deviation_max_m = std::max(report_.deviation_max_m, segments_.deviation_max_m());
+        report_.triangles += segments.leaf_levels().size();
+        report_.vertices += segments.vertices().size();
+        report_.strip_indices += segments.indices().size();
+        report_.deviation_max_m = std::max(report_.deviation_max_m, segments.deviation_max_m());
         report_.pixel_deviation_max =
-            std::max(report_.pixel_deviation_max, segments_.ratio_max() * options_.max_pixel_deviation);
-        report_.damaged = report_.damaged || segments_.damaged();
+            std::max(report_.pixel_deviation_max, segments.ratio_max() * options_.max_pixel_deviation);
+        report_.damaged = report_.damaged || segments.damaged();
     }
 
     void paint_part(const PicturePart& part, std::vector<std::uint8_t>& band) {
-        build_mesh(part);
         std::vector<std::uint8_t> pixels;
         steps_.time("draw", [&] {
             if (!target_ || target_.width() != part.width || target_.height() != part.height)
@@ -240,7 +324,7 @@ class Painter {
             relief_.bind(6);
             patch_texture_.bind(7);
             const double stretch = (wgs84.a / wgs84.b) * (wgs84.a / wgs84.b);
-            terrain_->draw(camera_, part, {options_.exaggeration, stretch, patch_range});
+            terrain_->draw(camera_, part, {options_.exaggeration, stretch, patch_range, from_afar_});
             overlay_->draw(camera_, part);
             sky_->draw(camera_, part);
             pixels = target_.read_rgba8();
@@ -264,13 +348,14 @@ class Painter {
         report_.backend = backend_name(context_.backend());
         report_.gl_version = context_.gl_version();
         report_.gl_renderer = context_.gl_renderer();
-        report_.seconds = steps_.list;
     }
 
     const RenderOptions& options_;
     PictureReport& report_;
-    Steps steps_;
+    Steps& steps_;
     unsigned threads_;
+    std::future<std::vector<std::vector<std::uint8_t>>> noise_;
+    std::future<AtmosphereTables> tables_;
     Context context_;
     LazyEarth earth_;
     ChecksumIndex index_;
@@ -278,19 +363,25 @@ class Painter {
     Camera camera_;
     double occluder_radius_;
     Texture day_, night_, relief_, patch_texture_;
+    bool from_afar_ = false;
     std::optional<TerrainPass> terrain_;
     std::optional<SkyPass> sky_;
     std::optional<OverlayPass> overlay_;
-    planet::Segments segments_;
-    ReliefPatches patches_;
     Framebuffer target_;
+    std::vector<PicturePart> parts_;
+    PartMesh meshes_[2];      ///< by the last bit of the part's number
+    std::future<void> mesh_;  ///< last: its end waits for work that uses all of the above
 };
 
 }  // namespace
 
 PictureReport draw_picture(const RenderOptions& options) {
     PictureReport report;
-    Painter(options, report).paint();
+    Steps steps;
+    BandWriter output(options, steps);
+    Painter(options, report, steps).paint(output);  // its end, closing OpenGL, runs beside the encoding
+    output.finish();
+    report.seconds = steps.list();
     return report;
 }
 

@@ -19,10 +19,9 @@ Texture table_2d(const TableImage& table) {
     return t;
 }
 
-Texture noise_texture() {
-    constexpr int side = 64;
-    Texture t = Texture::make_3d(GL_RGBA8, side, side, side, mip_levels(side, side, side));
-    const auto levels = make_noise_levels(side);
+Texture noise_texture(std::span<const std::vector<std::uint8_t>> levels) {
+    const int side = 1 << (levels.size() - 1);
+    Texture t = Texture::make_3d(GL_RGBA8, side, side, side, static_cast<int>(levels.size()));
     for (int level = 0; level < t.levels(); ++level) t.upload(level, bytes_of(levels[static_cast<std::size_t>(level)]));
     t.set_sampling({.wrap_s = GL_REPEAT, .wrap_t = GL_REPEAT, .wrap_r = GL_REPEAT});
     return t;
@@ -30,12 +29,12 @@ Texture noise_texture() {
 
 }  // namespace
 
-SkyPass::SkyPass(std::span<const Star> stars)
+SkyPass::SkyPass(std::span<const Star> stars, std::span<const std::vector<std::uint8_t>> noise)
     : sky_(Program::link({"sky.vert.glsl", "sky.frag.glsl"})),
       nothing_(VertexArray::create()),
       uniforms_(sizeof(SkyUniforms)),
       star_count_(static_cast<GLsizei>(stars.size())),
-      noise_(noise_texture()) {
+      noise_(noise_texture(noise)) {
     if (stars.empty()) return;
     stars_ = Program::link({"stars.vert.glsl", "stars.frag.glsl"});
     star_buffer_ = Buffer(bytes_of(stars));

@@ -14,8 +14,8 @@ namespace render {
 
 class SkyPass {
   public:
-    /// @param stars may be empty
-    explicit SkyPass(std::span<const Star> stars);
+    /// @param stars may be empty @param noise of make_noise_levels()
+    SkyPass(std::span<const Star> stars, std::span<const std::vector<std::uint8_t>> noise);
 
     /// Uploads the tables of a view. @param ecef_from_inertial the Earth's rotation, for the stars
     void set_view(const AtmosphereTables& tables, const ViewTable& view, const glm::mat3& ecef_from_inertial);
