@@ -314,8 +314,11 @@ class Painter {
     void paint_part(const PicturePart& part, std::vector<std::uint8_t>& band) {
         std::vector<std::uint8_t> pixels;
         steps_.time("draw", [&] {
+            const int samples = options_.samples > 0 ? options_.samples
+                                : from_afar_         ? 1
+                                                     : std::min(4, context_.limits().samples);
             if (!target_ || target_.width() != part.width || target_.height() != part.height)
-                target_ = Framebuffer(part.width, part.height, {.color_format = GL_RGBA8, .samples = options_.samples});
+                target_ = Framebuffer(part.width, part.height, {.color_format = GL_RGBA8, .samples = samples});
             target_.bind();
             target_.clear(0, 0, 0, 1);
             sky_->bind(camera_, part);
