@@ -129,7 +129,7 @@ class SegmentBuilder {
         const auto first_index = static_cast<std::uint32_t>(strip_.indices().size());
         first_vertex_ = vertices.size();
         const auto first_leaf = static_cast<std::uint32_t>(leaf_levels.size());
-        begun_ = false;
+        strip_.end();
         frames_.assign(1, frame_of_tile(root.tile->root, half, patch != half));
         room();
         Walk walk(tiles_, view_.test, *this);
@@ -168,15 +168,7 @@ class SegmentBuilder {
     }
 
     void leaf(const PlacedTile& t, unsigned i, unsigned state) {
-        const auto& corner = layout_.corners[i];
-        if (!begun_) {
-            const auto [l, r] = strip_first_gate(state);
-            const std::uint32_t left = add(t, corner[l]);
-            strip_.begin(left, add(t, corner[r]));
-            begun_ = true;
-        }
-        const StripStep step = strip_steps[state];
-        strip_.step(step, [&] { return add(t, corner[step.corner]); });
+        strip_.leaf(state, [&](std::size_t corner) { return add(t, layout_.corners[i][corner]); });
         leaf_levels.push_back(static_cast<std::uint8_t>(code_of(t, i).bisection_level()));
         if (!(i >> t.depth)) certify(t.split[i]);
     }
@@ -218,7 +210,6 @@ class SegmentBuilder {
     StripWriter strip_;
     std::vector<Frame> frames_;
     std::size_t first_vertex_ = 0;
-    bool begun_ = false;
 };
 
 }  // namespace

@@ -66,8 +66,8 @@ vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
     vec3 hue = s.imagery / lum;
     vec3 grass = mix(hue, vec3(1.05f, 1.06f, 0.55f), 0.45f) * mix(0.075f, 0.15f, dry) * (1.0f + 0.3f * large);
     vec3 trees = mix(vec3(0.030f, 0.045f, 0.018f), hue * 0.048f, 0.4f) * (1.0f + 0.55f * small);
-    vec3 scree = mix(vec3(0.235f, 0.215f, 0.195f), hue * 0.21f, 0.35f);
-    vec3 rock = mix(vec3(0.135f, 0.122f, 0.112f), hue * 0.12f, 0.35f);
+    vec3 scree = mix(vec3(0.165f, 0.152f, 0.138f), hue * 0.15f, 0.35f);
+    vec3 rock = mix(vec3(0.105f, 0.096f, 0.089f), hue * 0.095f, 0.35f);
     vec3 snow = vec3(0.78f, 0.82f, 0.88f);
 
     float below = 1.0f - smoothstep(treeline - 170.0f, treeline + 110.0f, h);
