@@ -9,7 +9,6 @@ struct StripSink {
     GrowingArray<GridPosition>& vertices;
     StripWriter& strip;
     const TileLayout& layout = tile_layout();
-    bool begun = false;
 
     // A tile's own cells have at most tile_cells leaves, and a leaf adds at most one vertex.
     void tile(const PlacedTile&) {
@@ -23,15 +22,7 @@ struct StripSink {
     }
 
     std::uint32_t leaf(const PlacedTile& t, unsigned i, unsigned state) {
-        const auto& corner = layout.corners[i];
-        if (!begun) {
-            const auto [l, r] = strip_first_gate(state);
-            const std::uint32_t left = add(t, corner[l]);
-            strip.begin(left, add(t, corner[r]));
-            begun = true;
-        }
-        const StripStep step = strip_steps[state];
-        return strip.step(step, [&] { return add(t, corner[step.corner]); });
+        return strip.leaf(state, [&](std::size_t corner) { return add(t, layout.corners[i][corner]); });
     }
 };
 
@@ -39,7 +30,7 @@ struct ListSink : StripSink {
     TriangleMesh& mesh;
 
     void leaf(const PlacedTile& t, unsigned i, unsigned state) {
-        const bool first = !begun;
+        const bool first = !strip.begun();
         const std::uint32_t l = first ? 0 : strip.gate_left(), r = first ? 1 : strip.gate_right();
         const std::uint32_t w = StripSink::leaf(t, i, state);
         mesh.triangles.push_back({l, r, w});

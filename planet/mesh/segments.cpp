@@ -33,16 +33,17 @@ class RootCollector {
             if (child)
                 cell(*child, 1);
             else
-                roots_.push_back({&t, i, distance_to(t.split[i >> 1])});
+                roots_.push_back({&t, i, distance_to(t.split[i >> 1], radius_of(t, i >> 1))});
             return;
         }
         const SplitRecord& s = t.split[i];
         const glm::dvec3 m(s.x, s.y, s.z);
-        if (view_.culling.hidden(m, static_cast<double>(s.radius))) return;
+        const double radius = radius_of(t, i);
+        if (view_.culling.hidden(m, radius)) return;
         const double leg = cell_metrics(code_of(t, i).bisection_level()).split_max * view_.radius_m / std::sqrt(2.0);
         const double reach = glm::distance(m, view_.test.eye) - leg;
         if (!view_.test(s) || leg < view_.segment_angle * reach) {
-            roots_.push_back({&t, i, distance_to(s)});
+            roots_.push_back({&t, i, distance_to(s, radius)});
             return;
         }
         cell(t, 2 * i);
@@ -50,8 +51,18 @@ class RootCollector {
     }
 
   private:
-    double distance_to(const SplitRecord& s) const {
-        return std::max(0.0, glm::distance(glm::dvec3(s.x, s.y, s.z), view_.test.eye) - static_cast<double>(s.radius));
+    // Everything in a cell is within this of its split vertex. A diamond that does not exist has no radius: its cells
+    // are flat, and their corners are the farthest.
+    double radius_of(const PlacedTile& t, unsigned i) const {
+        const SplitRecord& s = t.split[i];
+        if (s.deviation > 0) return static_cast<double>(s.radius);
+        double reach = 0;
+        for (const std::uint16_t corner : tile_layout().corners[i])
+            reach = std::max(reach, glm::distance(glm::dvec3(s.x, s.y, s.z), ecef_from_grid(t.position[corner])));
+        return reach;
+    }
+    double distance_to(const SplitRecord& s, double radius) const {
+        return std::max(0.0, glm::distance(glm::dvec3(s.x, s.y, s.z), view_.test.eye) - radius);
     }
 
     const TileSource& tiles_;
@@ -118,7 +129,7 @@ class SegmentBuilder {
         const auto first_index = static_cast<std::uint32_t>(strip_.indices().size());
         first_vertex_ = vertices.size();
         const auto first_leaf = static_cast<std::uint32_t>(leaf_levels.size());
-        begun_ = false;
+        strip_.end();
         frames_.assign(1, frame_of_tile(root.tile->root, half, patch != half));
         room();
         Walk walk(tiles_, view_.test, *this);
@@ -157,15 +168,7 @@ class SegmentBuilder {
     }
 
     void leaf(const PlacedTile& t, unsigned i, unsigned state) {
-        const auto& corner = layout_.corners[i];
-        if (!begun_) {
-            const auto [l, r] = strip_first_gate(state);
-            const std::uint32_t left = add(t, corner[l]);
-            strip_.begin(left, add(t, corner[r]));
-            begun_ = true;
-        }
-        const StripStep step = strip_steps[state];
-        strip_.step(step, [&] { return add(t, corner[step.corner]); });
+        strip_.leaf(state, [&](std::size_t corner) { return add(t, layout_.corners[i][corner]); });
         leaf_levels.push_back(static_cast<std::uint8_t>(code_of(t, i).bisection_level()));
         if (!(i >> t.depth)) certify(t.split[i]);
     }
@@ -207,7 +210,6 @@ class SegmentBuilder {
     StripWriter strip_;
     std::vector<Frame> frames_;
     std::size_t first_vertex_ = 0;
-    bool begun_ = false;
 };
 
 }  // namespace

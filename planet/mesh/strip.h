@@ -124,6 +124,7 @@ class StripWriter {
         indices_.push(left);
         indices_.push(right);
         last_left_ = false;
+        begun_ = true;
     }
 
     std::uint32_t gate_left() const { return left_.back(); }
@@ -143,6 +144,23 @@ class StripWriter {
         last_left_ = step.left_side;
         indices_.push(moving.back());
         return moving.back();
+    }
+
+    /// The next leaf begins a strip of its own.
+    void end() { begun_ = false; }
+    bool begun() const { return begun_; }
+
+    /// Steps through a leaf; the first one of a strip enters through its gate. @param add_corner makes a vertex of corner
+    /// 0..2 (left, right, apex) of the leaf and returns its index
+    template <class AddCorner>
+    std::uint32_t leaf(unsigned state, AddCorner&& add_corner) {
+        if (!begun_) {
+            const auto [l, r] = strip_first_gate(state);
+            const std::uint32_t left = add_corner(l);
+            begin(left, add_corner(r));
+        }
+        const StripStep s = strip_steps[state];
+        return step(s, [&] { return add_corner(s.corner); });
     }
 
     /// Steps through `count` leaves at once, without a branch a leaf. New vertices are numbered from `next` on, in the
@@ -172,11 +190,14 @@ class StripWriter {
 
     /// All strips so far, one behind the other.
     const GrowingArray<std::uint32_t>& indices() const { return indices_; }
-    void clear() { indices_.clear(); }
+    void clear() {
+        indices_.clear();
+        end();
+    }
 
   private:
     GrowingArray<std::uint32_t> left_, right_, indices_;
-    bool last_left_ = false;
+    bool last_left_ = false, begun_ = false;
 };
 
 }  // namespace planet

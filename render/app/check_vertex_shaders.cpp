@@ -49,8 +49,8 @@ static_assert(sizeof(Drawn) == 28);
 /// A vertex shader of ours, and what it makes of grid positions.
 class Capture {
   public:
-    Capture(std::initializer_list<std::string_view> shaders, std::vector<std::string> outputs, std::size_t vertex_size)
-        : program_(Program::link(shaders, {.feedback_varyings = std::move(outputs)})),
+    Capture(std::initializer_list<std::string_view> shaders, const ProgramOptions& options, std::size_t vertex_size)
+        : program_(Program::link(shaders, options)),
           array_(VertexArray::create()),
           input_(points_in_view * sizeof(GridPosition)),
           output_(points_in_view * vertex_size, 0) {
@@ -189,8 +189,11 @@ class Checker {
     }
 
     std::mt19937_64 engine_{1};
-    Capture terrain_{{"terrain.vert.glsl", "terrain.frag.glsl"}, {"view", "gl_Position"}, sizeof(Drawn)};
-    Capture overlay_{{"overlay.vert.glsl", "overlay.frag.glsl"}, {"gl_Position"}, sizeof(glm::vec4)};
+    Capture terrain_{{"terrain.vert.glsl", "terrain.frag.glsl"},
+                     {.defines = {"PATCHED"}, .feedback_varyings = {"view", "gl_Position"}},
+                     sizeof(Drawn)};
+    Capture overlay_{
+        {"overlay.vert.glsl", "overlay.frag.glsl"}, {.feedback_varyings = {"gl_Position"}}, sizeof(glm::vec4)};
 };
 
 std::string distance_text(double metres) {

@@ -36,6 +36,7 @@ constexpr int part_side = 2048;
 constexpr double patch_pixels = 96;
 /// A patch of this many bisection levels above the finest has two texels between the vertices of the surface.
 constexpr int finest_patch_above = 10;
+constexpr double highest_ground_m = 9000;
 constexpr std::size_t patch_limit = 1800;
 
 /// Adds up the time of steps, also of those that run side by side: their sum can exceed the time of the whole.
@@ -255,6 +256,11 @@ class Painter {
         });
         auto [tables, view] = air.get();
         view.uniforms.sky_detail.w = static_cast<float>(imagery.texel_m(wgs84.mean_radius()));
+        // The least ground distance and the smallest pixel there can be, at a corner.
+        const double clearance =
+            planet::height_from_ecef(wgs84, camera_.eye).m - highest_ground_m * options_.exaggeration;
+        from_afar_ = !needs_close_up(view.uniforms, std::max(clearance, 0.0),
+                                     1 / (camera_.focal_px * (1 + camera_.tan_corner() * camera_.tan_corner())));
         sky_->set_view(tables, view, glm::mat3(planet::ecef_from_j2000(options_.time)));
         set_reversed_depth();
     }
@@ -308,8 +314,11 @@ class Painter {
     void paint_part(const PicturePart& part, std::vector<std::uint8_t>& band) {
         std::vector<std::uint8_t> pixels;
         steps_.time("draw", [&] {
+            const int samples = options_.samples > 0 ? options_.samples
+                                : from_afar_         ? 1
+                                                     : std::min(4, context_.limits().samples);
             if (!target_ || target_.width() != part.width || target_.height() != part.height)
-                target_ = Framebuffer(part.width, part.height, {.color_format = GL_RGBA8, .samples = options_.samples});
+                target_ = Framebuffer(part.width, part.height, {.color_format = GL_RGBA8, .samples = samples});
             target_.bind();
             target_.clear(0, 0, 0, 1);
             sky_->bind(camera_, part);
@@ -318,7 +327,7 @@ class Painter {
             relief_.bind(6);
             patch_texture_.bind(7);
             const double stretch = (wgs84.a / wgs84.b) * (wgs84.a / wgs84.b);
-            terrain_->draw(camera_, part, {options_.exaggeration, stretch, patch_range});
+            terrain_->draw(camera_, part, {options_.exaggeration, stretch, patch_range, from_afar_});
             overlay_->draw(camera_, part);
             sky_->draw(camera_, part);
             pixels = target_.read_rgba8();
@@ -357,6 +366,7 @@ class Painter {
     Camera camera_;
     double occluder_radius_;
     Texture day_, night_, relief_, patch_texture_;
+    bool from_afar_ = false;
     std::optional<TerrainPass> terrain_;
     std::optional<SkyPass> sky_;
     std::optional<OverlayPass> overlay_;

@@ -50,7 +50,8 @@ struct RenderOptions {
     double exaggeration = 1;           ///< of heights, 0..100
     double max_pixel_deviation = 0.5;  ///< pixels, 0.05..100: the certified bound on what the mesh may be off
     std::uint32_t show = 0;            ///< Overlay bits
-    int samples = 1;                   ///< a pixel: 1, 2, 4 or 8; at most what the context has
+    int samples = 0;                   ///< a pixel: 1, 2, 4 or 8, at most what the context has; 0: 4 where ridges can
+                                       ///< stand against the sky, 1 from afar, where the air hides the edge
     int threads = 0;                   ///< 1..256; 0: as many as there are processors. Changes no byte
     BackendChoice backend = BackendChoice::automatic;
 

@@ -1,5 +1,6 @@
 #include "render/passes/terrain.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace render {
@@ -30,7 +31,16 @@ void set_grid_camera(Program& program, const Camera& camera, const PicturePart& 
     program.set("clip_from_ecef", camera.clip_from_ecef(part));
 }
 
-TerrainPass::TerrainPass() : program_(Program::link({"terrain.vert.glsl", "terrain.frag.glsl"})) {}
+Program& TerrainPass::program(bool from_afar) {
+    Program& p = programs_[static_cast<std::size_t>(from_afar) + 2 * static_cast<std::size_t>(patched_)];
+    if (!p) {
+        ProgramOptions options;
+        if (from_afar) options.defines.push_back("FROM_AFAR");
+        if (patched_) options.defines.push_back("PATCHED");
+        p = Program::link({"terrain.vert.glsl", "terrain.frag.glsl"}, options);
+    }
+    return p;
+}
 
 void TerrainPass::upload(const planet::Segments& segments, std::span<const std::int32_t> patch_layers) {
     using planet::SegmentVertex;
@@ -39,6 +49,7 @@ void TerrainPass::upload(const planet::Segments& segments, std::span<const std::
     for (const planet::Segment& s : segments.segments())
         commands.push_back({s.index_count, 1, s.first_index, static_cast<GLint>(s.first_vertex),
                             static_cast<GLuint>(commands.size())});
+    patched_ = std::any_of(patch_layers.begin(), patch_layers.end(), [](std::int32_t layer) { return layer >= 0; });
     command_count_ = static_cast<GLsizei>(commands.size());
     vertices_ = Buffer(bytes_of(segments.vertices()));
     indices_ = Buffer(bytes_of(segments.indices()));
@@ -63,12 +74,13 @@ void TerrainPass::upload(const planet::Segments& segments, std::span<const std::
 }
 
 void TerrainPass::draw(const Camera& camera, const PicturePart& part, const TerrainLook& look) {
-    program_.use();
-    set_grid_camera(program_, camera, part);
-    program_.set("eye", glm::vec3(camera.eye));
-    program_.set("shape", glm::vec2(look.polar_stretch, look.exaggeration));
-    program_.set("pixel_angle", static_cast<float>(1.0 / camera.focal_px));
-    program_.set("patch_range", look.patch_range);
+    Program& p = program(look.from_afar);
+    p.use();
+    set_grid_camera(p, camera, part);
+    p.set("eye", glm::vec3(camera.eye));
+    p.set("shape", glm::vec2(look.polar_stretch, look.exaggeration));
+    p.set("pixel_angle", static_cast<float>(1.0 / camera.focal_px));
+    p.set("patch_range", look.patch_range);
     array_.bind();
     commands_.bind(GL_DRAW_INDIRECT_BUFFER);
     gl().Enable(GL_DEPTH_TEST);

@@ -1,6 +1,7 @@
 #pragma once
 // Segments as pixels: one indirect draw of all strips.
 
+#include <array>
 #include <span>
 
 #include "planet/mesh/segments.h"
@@ -15,12 +16,11 @@ struct TerrainLook {
     double exaggeration = 1;
     double polar_stretch = 1;  ///< (a/b)^2 of the ellipsoid
     float patch_range = 1;     ///< what 1 in a patch texel stands for
+    bool from_afar = false;    ///< see needs_close_up()
 };
 
 class TerrainPass {
   public:
-    TerrainPass();
-
     /// Replaces the mesh. @param patch_layers by segment: the layer of its normals in the patch texture, or -1
     void upload(const planet::Segments& segments, std::span<const std::int32_t> patch_layers);
 
@@ -31,7 +31,10 @@ class TerrainPass {
     std::size_t bytes() const { return vertices_.size() + indices_.size() + layers_.size() + commands_.size(); }
 
   private:
-    Program program_;
+    Program& program(bool from_afar);
+
+    std::array<Program, 4> programs_;  // linked when first needed: bit 0 from afar, bit 1 patched
+    bool patched_ = false;
     VertexArray array_;
     Buffer vertices_, indices_, layers_, commands_;
     GLsizei command_count_ = 0;

@@ -81,15 +81,15 @@ AirRay air_ray(vec3 direction) {
     return ray;
 }
 
-/// The air along the first `distance` metres (sphere space) of a ray.
-Air air_along(AirRay ray, float distance) {
+/// The air along the first `distance` metres (sphere space) of a ray. @param share of its depth that counts, 0..1
+Air air_along(AirRay ray, float distance, float share) {
     Air air;
     float length_in_air = clamp(distance, ray.enter, max(ray.leave, ray.enter)) - ray.enter;
     float s = length_in_air / max(ray.leave - ray.enter, 1.0f);
     float u = pow(max(s, 1.0e-12f), ray.power);
     vec4 texel = textureLod(air_table, vec3(inset(ray.azimuth, air_azimuths), ray.elevation, inset(u, air_slices)), 0.0f);
     // rgb: mean source function (Chandrasekhar's J) scaled; a: log of the mean extinction in green, per 1000 km.
-    float depth = exp(texel.w) * length_in_air * 1.0e-6f;
+    float depth = exp(texel.w) * length_in_air * 1.0e-6f * share;
     air.transmittance = exp(-depth * ray.ratio);
     // The night's own glow keeps the limb and the sky from pure black.
     vec3 source = vec3(texel) * sky_ratio_below.w + vec3(0.5f, 0.8f, 1.1f) * sky_exposure.z;
@@ -106,19 +106,25 @@ vec3 sphere_from_ecef(vec3 v) {
 Air air_to(vec3 view) {
     vec3 v = sphere_from_ecef(view);
     float distance = max(sqrt(dot(v, v)), 1.0e-3f);
-    return air_along(air_ray(v / distance), distance);
+    return air_along(air_ray(v / distance), distance, 1.0f);
 }
 
 /// The whole air behind a direction, to space or to the ground sphere. @param direction ecef, any length > 0.
 Air air_beyond(vec3 direction) {
     vec3 v = sphere_from_ecef(direction);
     AirRay ray = air_ray(v / sqrt(dot(v, v)));
-    return air_along(ray, max(ray.leave, 0.0f));
+    return air_along(ray, max(ray.leave, 0.0f), 1.0f);
 }
+
+/// How much of the air before the ground is drawn. A photographer cuts haze with a filter and in print; all of it leaves
+/// mountains 60 km away in milk. Where the air is deep either way, at the horizon, ground still fades into the sky.
+const float haze_share = 0.35f;
 
 /// Radiance of a surface after the air before it. @param view ecef vector from the eye, metres.
 vec3 aerial(vec3 radiance, vec3 view) {
-    Air air = air_to(view);
+    vec3 v = sphere_from_ecef(view);
+    float distance = max(sqrt(dot(v, v)), 1.0e-3f);
+    Air air = air_along(air_ray(v / distance), distance, haze_share);
     return radiance * air.transmittance + air.in_scatter;
 }
 

@@ -7,7 +7,7 @@ vec3 sun_through_air() {
     float mu = dot(sphere, vec3(sky_up)) / sqrt(dot(sphere, sphere));
     float rmu = sky_up.w * mu;
     bool hidden = mu < 0.0f && rmu * rmu + sky_disc.x > 0.0f;
-    return hidden ? vec3(0.0f) : air_along(ray, max(ray.leave, 0.0f)).transmittance;
+    return hidden ? vec3(0.0f) : air_along(ray, max(ray.leave, 0.0f), 1.0f).transmittance;
 }
 
 /// Radiance of the sky in a direction, stars left out. @param direction ecef, unit  @param through sun_through_air()

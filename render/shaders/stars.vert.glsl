@@ -21,7 +21,9 @@ void main() {
     gl_Position = vec4(clip.xy, 0.0, clip.w);
     Air air = air_beyond(d);
     behind = air.in_scatter;
-    light = star_light * air.transmittance * sky_picture.z;
+    // Stars are drawn brighter than they are (stars.h), so by day the sky must put them out as it does to the eye.
+    float sky = dot(behind, vec3(0.2126, 0.7152, 0.0722)) * sky_exposure.x;
+    light = star_light * air.transmittance * (sky_picture.z / (1.0 + 4.0e4 * sky * sky));
     float brightest = max(star_light.r, max(star_light.g, star_light.b));
     spread = 0.75 + 0.35 * clamp(log2(1.0 + brightest), 0.0, 2.0);
     gl_PointSize = ceil(spread * 6.0);

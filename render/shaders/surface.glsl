@@ -1,6 +1,6 @@
 // Radiance of the planet's surface: land, sea, snow, night. Also C++, see atmosphere.glsl, which comes first.
 //
-// Define FROM_AFAR where every pixel is wider than 0.6 texels of the imagery (sky_detail.w): the picture is the same,
+// Define FROM_AFAR where every pixel is wider than 0.15 texels of the imagery (sky_detail.w): the picture is the same,
 // and software renderers, which run every branch and the first turn of every loop whether or not a pixel
 // takes it, save two fifths of the time.
 
@@ -30,7 +30,7 @@ vec3 lamps(float value) {
 
 /// How far the imagery's own texels are magnified: 0 where they are as fine as pixels, 1 where one covers thousands.
 float close_up(float footprint) {
-    return 1.0f - smoothstep(log2(sky_detail.w * 0.02f), log2(sky_detail.w * 0.6f), log2(max(footprint, 1.0e-3f)));
+    return 1.0f - smoothstep(log2(sky_detail.w * 0.005f), log2(sky_detail.w * 0.15f), log2(max(footprint, 1.0e-3f)));
 }
 
 /// Noise at the planet-fixed point beside the eye, with the finest features at about two pixels whatever the distance:
@@ -66,17 +66,17 @@ vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
     vec3 hue = s.imagery / lum;
     vec3 grass = mix(hue, vec3(1.05f, 1.06f, 0.55f), 0.45f) * mix(0.075f, 0.15f, dry) * (1.0f + 0.3f * large);
     vec3 trees = mix(vec3(0.030f, 0.045f, 0.018f), hue * 0.048f, 0.4f) * (1.0f + 0.55f * small);
-    vec3 scree = mix(vec3(0.235f, 0.215f, 0.195f), hue * 0.21f, 0.35f);
-    vec3 rock = mix(vec3(0.135f, 0.122f, 0.112f), hue * 0.12f, 0.35f);
+    vec3 scree = mix(vec3(0.165f, 0.152f, 0.138f), hue * 0.15f, 0.35f);
+    vec3 rock = mix(vec3(0.105f, 0.096f, 0.089f), hue * 0.095f, 0.35f);
     vec3 snow = vec3(0.78f, 0.82f, 0.88f);
 
     float below = 1.0f - smoothstep(treeline - 170.0f, treeline + 110.0f, h);
     float wet = max(1.0f - dry, 0.85f * smoothstep(treeline - 1500.0f, treeline - 600.0f, h + 350.0f * large));
     float stand = smoothstep(-0.35f, 0.25f, large * 0.7f + small * 0.6f + 0.9f * wet - 0.45f);
-    vec3 cover = mix(grass * (1.0f + 0.25f * small), trees, below * wet * stand * smoothstep(0.55f, 0.75f, steep));
+    vec3 cover = mix(grass * (1.0f + 0.42f * small), trees, below * wet * stand * smoothstep(0.55f, 0.75f, steep));
     float bare = smoothstep(treeline + 150.0f, treeline + 700.0f, h + 250.0f * small);
-    bare = max(bare, 1.0f - smoothstep(0.84f, 0.93f, steep + 0.05f * small));
-    float cliff = 1.0f - smoothstep(0.70f, 0.86f, steep + 0.08f * small);
+    bare = max(bare, 1.0f - smoothstep(0.76f, 0.86f, steep + 0.05f * small));
+    float cliff = 1.0f - smoothstep(0.64f, 0.80f, steep + 0.08f * small);
     cover = mix(cover, mix(scree, rock, cliff) * (1.0f + 0.35f * small), bare);
 
     float snowline = treeline + mix(800.0f, 1100.0f, dry);
@@ -125,7 +125,9 @@ vec3 surface_radiance(SurfaceInput s) {
     Light light = light_at(s.height, sun_cosine);
 
     vec3 albedo = s.imagery;
-    vec3 ground = s.terrain_normal;
+    // Averaging normals over wide pixels flattens relief and no shadows are cast: slopes are drawn steeper from afar.
+    float drawn_slope = 1.0f + 0.9f * smoothstep(10.0f, 300.0f, s.footprint);
+    vec3 ground = normalize(s.normal + (s.terrain_normal - s.normal) * drawn_slope);
     float water = s.water;
     float near = 0.0f;
 #ifndef FROM_AFAR
@@ -133,7 +135,7 @@ vec3 surface_radiance(SurfaceInput s) {
     {
         vec4 fine = detail_noise(s.view, s.footprint);
         float large = patch_noise(s.view, 2800.0f) + 0.5f * patch_noise(s.view, 230.0f);
-        float small = 0.6f * fine.w + 0.6f * patch_noise(s.view, 230.0f);
+        float small = 0.6f * fine.w + 0.4f * patch_noise(s.view, 230.0f) + 0.7f * patch_noise(s.view, 14.0f);
         // Bumps stand for what is finer than any elevation data: none from afar, few on the plains.
         vec3 bump = vec3(fine) - dot(vec3(fine), ground) * ground;
         float rough = (1.0f - smoothstep(15.0f, 150.0f, s.footprint)) * min(0.25f + 2.5f * (1.0f - dot(ground, s.normal)), 1.0f);

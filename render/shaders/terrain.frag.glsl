@@ -1,4 +1,6 @@
 #version 450 core
+// PATCHED: some segment has a patch. FROM_AFAR: see surface.glsl. Software renderers run every branch, so what a picture
+// does not need is compiled out.
 #include "atmosphere.glsl"
 #include "surface.glsl"
 #include "tonemap.glsl"
@@ -29,12 +31,11 @@ void main() {
     s.water = day.a;
     s.night = texture(night_cube, s.normal).rgb;
     vec3 offset = texture(relief_cube, s.normal).xyz * 0.5;
+#ifdef PATCHED
     vec2 dx = dFdx(patch_uv), dy = dFdy(patch_uv);
-    // A loop of at most one turn: software rasterizers skip a loop that no pixel enters, but never a branch.
-    for (int turn = layer; turn >= 0; turn = -1) {
-        vec4 fine = textureGrad(patches, vec3(patch_uv, float(turn)), dx, dy);
-        offset = mix(offset, fine.xyz * patch_range, fine.w);
-    }
+    vec4 fine = textureGrad(patches, vec3(patch_uv, float(max(layer, 0))), dx, dy);
+    offset = mix(offset, fine.xyz * patch_range, layer < 0 ? 0.0 : fine.w);
+#endif
     s.terrain_normal = normalize(s.normal + offset * shape.y);
     s.height = orthometric;
     s.footprint = length(view) * pixel_angle;

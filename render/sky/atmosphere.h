@@ -133,7 +133,7 @@ float exposure_for(const AtmosphereTables& tables, const glm::dvec3& eye, const 
 /// FROM_AFAR defined and give the same picture.
 /// @param height least distance from the eye to the ground, m   @param pixel_angle of the picture's middle, rad
 inline bool needs_close_up(const SkyUniforms& uniforms, double height, double pixel_angle) {
-    return height * pixel_angle < 0.6 * double(uniforms.sky_detail.w);
+    return height * pixel_angle < 0.15 * double(uniforms.sky_detail.w);
 }
 
 /// ecef to the space of the tables: z stretched by a/b.

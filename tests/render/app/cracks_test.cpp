@@ -1,8 +1,8 @@
 // No cracks, seen: the default Earth's segments, through the vertex shader pictures are drawn with, in white on magenta.
 //
 // What is tested, in every view and pixel for pixel:
-//   ball      a pixel whose ray meets a ball that lies below all terrain is not magenta. Exact, and what counts for
-//             eyes inside the planet, where it holds for every pixel
+//   ball      a pixel whose ray meets a ball that lies below all that is drawn is not magenta. Exact, and what counts
+//             for eyes inside the planet, where it holds for every pixel
 //   regions   every magenta region reaches the picture's border. Terrain is a height field, so sky that is enclosed by
 //             terrain is a hole (an eye above it, nothing overhangs). This covers the belt between ball and terrain;
 //             a crack that opens into the sky is not seen by it
@@ -47,7 +47,7 @@ class Terrain {
         for (int face = 0; face < planet::face_count; ++face)
             lowest = std::min(
                 lowest, static_cast<double>(field_.cache().tile(planet::LocationCode::face_root(face))->min_height));
-        // 400 m for the geoid and for the sides of triangles, which run below the ground.
+        // The geoid goes down to -107 m, and the finest triangles run below the ground too.
         ball_ = wgs84.b + lowest * exaggeration - 400;
     }
     const planet::StoreField& field() const { return field_; }
@@ -173,7 +173,7 @@ class Views {
 
 planet::SegmentView segment_view(const Camera& camera, double ball) {
     planet::SegmentView view;
-    view.test = {camera.eye, planet::split_reach(camera.focal_px, camera.tan_corner(), 0.5)};
+    view.test = {camera.eye, planet::split_reach(camera.focal_px, camera.tan_corner(), 1)};
     view.culling = camera.culling({0, 0, side, side}, ball);
     view.radius_m = wgs84.mean_radius();
     view.segment_angle = 96 / camera.focal_px;
@@ -199,7 +199,7 @@ class Cracks : public testing::Test {
 };
 
 TEST_F(Cracks, NoneInAnyView) {
-    constexpr std::size_t count = 40;  // for each exaggeration
+    constexpr std::size_t count = 32;  // for each exaggeration
     WhitePass pass;
     planet::Segments segments;
     std::size_t sky = 0, ground = 0;
@@ -210,7 +210,10 @@ TEST_F(Cracks, NoneInAnyView) {
             const View view = views.next(i, terrain, exaggeration);
             segments.build(terrain.tiles(), segment_view(view.camera, terrain.ball()), 2);
             const auto magenta = pass.magenta(segments, view.camera, !view.inside);
-            EXPECT_EQ(holes_in_ball(magenta, view.camera, terrain.ball()), 0u) << "view " << i << ", x" << exaggeration;
+            // Where triangles are coarse they run below the surface they stand for.
+            const double ball = terrain.ball() - segments.deviation_max_m();
+            EXPECT_EQ(holes_in_ball(magenta, view.camera, ball), 0u)
+                << "view " << i << ", exaggeration " << exaggeration;
             EXPECT_EQ(enclosed(magenta), 0u) << "view " << i << ", exaggeration " << exaggeration;
             const auto empty = static_cast<std::size_t>(std::count(magenta.begin(), magenta.end(), true));
             if (view.inside) {
@@ -227,7 +230,7 @@ TEST_F(Cracks, NoneInAnyView) {
 TEST_F(Cracks, AreSeenWhereThereAreSome) {
     const Terrain terrain(store_, 5);
     const glm::dvec3 normal = planet::normal_from_geodetic(37.5 * degrees, -105.4 * degrees);
-    const Camera camera = make_camera(planet::ecef_from_normal(wgs84, normal, {80e3}), normal, 0, -70 * degrees,
+    const Camera camera = make_camera(planet::ecef_from_normal(wgs84, normal, {80e3}), normal, 0, -90 * degrees,
                                       focal_length_px(40 * degrees, side, side), side, side);
     planet::SegmentView view = segment_view(camera, terrain.ball());
     planet::Segments fine, coarse;
@@ -252,12 +255,10 @@ TEST_F(Cracks, AreSeenWhereThereAreSome) {
     });
     EXPECT_GT(enclosed(pass.magenta()), 0u);
 
-    // The segment in the middle of the picture is left out.
-    const planet::Segment& nearest =
-        *std::min_element(fine.segments().begin(), fine.segments().end(),
-                          [](const auto& a, const auto& b) { return a.distance_m < b.distance_m; });
+    // Every tenth segment is left out.
+    std::size_t count = 0;
     pass.begin(camera, true);
-    pass.draw(fine, [&](const planet::Segment& s) { return s.root != nearest.root; });
+    pass.draw(fine, [&](const planet::Segment&) { return ++count % 10 != 0; });
     EXPECT_GT(holes_in_ball(pass.magenta(), camera, terrain.ball()), 0u);
 }
 

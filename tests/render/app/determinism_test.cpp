@@ -26,7 +26,7 @@ constexpr View views[] = {
      "--size 320x180 --at 37.58,-105.49 --range 20km --heading 30 --pitch -20 --time 2026-06-21T16:00:00Z"},
     {"antimeridian",
      "--size 320x180 --at -16.5,180 --range 800km --heading 200 --pitch -40 --samples 4"
-     " --exaggeration 5 --show mesh,levels,curve --time 2026-06-21T23:00:00Z"},
+     " --show mesh,levels,curve --time 2026-06-21T23:00:00Z"},
     {"pole_at_night", "--size 180x320 --at -90,0 --height 300km --pitch -50"},
 };
 

@@ -202,33 +202,30 @@ TEST_F(Certificate, HoldsOnIntactData) {
         EXPECT_GT(rows(part), json_.at("skipped").empty() || std::string_view(part) != "drawn " ? 0 : -1) << part;
 }
 
-TEST_F(Certificate, FailsOnOneChangedByte) {
+// One bad row is a failure. No OpenGL is none: what needs it is skipped, and says why; all else is measured.
+TEST_F(Certificate, FailsOnOneChangedByteAndGoesOnWithoutOpenGl) {
     std::ofstream(data_ / "a.txt") << "abd";
+    const ScratchVariable egl("OCTAGLOBE_EGL_LIBRARY", "/nonexistent/libEGL.so");
+    const ScratchVariable osmesa("OCTAGLOBE_OSMESA_LIBRARY", "/nonexistent/libOSMesa.so");
     check();
     EXPECT_EQ(outcome_.status, 1);
     EXPECT_TRUE(outcome_.err.starts_with("octaglobe: check: 1 of ")) << outcome_.err;
     EXPECT_EQ(json_.at("failed"), 1);
-    EXPECT_NE(outcome_.out.find("a.txt"), std::string::npos);
-}
-
-TEST_F(Certificate, FailsWithoutChecksums) {
-    fs::remove(data_ / "SHA256SUMS");
-    check();
-    EXPECT_EQ(outcome_.status, 1);
-    EXPECT_EQ(json_.at("reasons").size(), 1u);
-}
-
-// No OpenGL is no failure: what needs it is skipped, and says why; all else is measured.
-TEST_F(Certificate, SkipsDrawingWithoutOpenGl) {
-    const ScratchVariable egl("OCTAGLOBE_EGL_LIBRARY", "/nonexistent/libEGL.so");
-    const ScratchVariable osmesa("OCTAGLOBE_OSMESA_LIBRARY", "/nonexistent/libOSMesa.so");
-    check();
-    EXPECT_EQ(outcome_.status, 0) << outcome_.out << outcome_.err;
+    EXPECT_NE(outcome_.out.find("a.txt: not what was shipped"), std::string::npos) << outcome_.out;
     EXPECT_EQ(rows("drawn "), 0);
     EXPECT_GT(rows("mesh "), 0);
     ASSERT_EQ(json_.at("skipped").size(), 1u);
     EXPECT_NE(json_.at("skipped")[0].get<std::string>().find("/nonexistent/"), std::string::npos);
     EXPECT_NE(outcome_.out.find("skipped: drawn positions: "), std::string::npos);
+}
+
+TEST_F(Certificate, FailsWithoutData) {
+    for (const auto& name : data_.names()) fs::remove(data_.path() / name);
+    check();
+    EXPECT_EQ(outcome_.status, 1);
+    EXPECT_EQ(json_.at("failed"), 2);  // meshes and checksums
+    EXPECT_EQ(json_.at("reasons").size(), 2u);
+    EXPECT_GT(rows("grid "), 0);
 }
 
 }  // namespace
