@@ -1,0 +1,258 @@
+// The terrain pass against its baseline: the same triangles, vertices, textures and shaders as one static indexed list.
+// Of the real Earth, so OCTAGLOBE_DATA must name its data; the store and the imagery are those of the user's cache. The
+// two are drawn in turns, each with glFinish and a clock (GL timers are unreliable in software), and compared by the
+// medians of their times: other work on the machine then hits both alike.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <thread>
+
+#include "planet/geodesy/geodetic.h"
+#include "planet/geodesy/sun.h"
+#include "planet/mesh/segments.h"
+#include "planet/octahedron/cell_metrics.h"
+#include "planet/store/store_field.h"
+#include "planet/store/store_tiles.h"
+#include "render/app/earth_store.h"
+#include "render/app/imagery.h"
+#include "render/app/render_options.h"
+#include "render/gl/context.h"
+#include "render/gl/framebuffer.h"
+#include "render/passes/sky.h"
+#include "render/passes/terrain.h"
+#include "render/picture/relief_patches.h"
+
+namespace {
+
+using namespace render;
+using planet::wgs84;
+
+constexpr int width = 1920, height = 1080;
+constexpr PicturePart part{0, 0, width, height};
+
+/// What both ways of drawing share.
+class World {
+  public:
+    World()
+        : context_(Context::create({})),
+          earth_(options_.earth),
+          index_(user_checksum_index()),
+          store_(open_earth_store(options_.earth, earth_, index_, options_.progress)),
+          field(store_),
+          tiles(field.cache(), {wgs84, 1}),
+          target(width, height) {
+        const Imagery imagery = open_imagery(
+            {}, options_.earth, index_, [&] { return earth_.get().heights; }, threads, options_.progress);
+        cubes_[0] = upload_cube(imagery.day, GL_SRGB8_ALPHA8);
+        cubes_[1] = upload_cube(imagery.night, GL_SRGB8_ALPHA8);
+        cubes_[2] = upload_cube(imagery.relief, GL_RGBA8_SNORM);
+        texel_m = static_cast<float>(imagery.texel_m(wgs84.mean_radius()));
+        set_reversed_depth();
+    }
+
+    void bind(SkyPass& sky, const Camera& camera, const Texture& patches) {
+        sky.bind(camera, part);
+        for (GLuint i = 0; i < 3; ++i) cubes_[i].bind(4 + i);
+        patches.bind(7);
+        target.bind();
+    }
+
+  private:
+    RenderOptions options_;
+    Context context_;
+    LazyEarth earth_;
+    ChecksumIndex index_;
+    std::shared_ptr<const planet::ElevationStore> store_;
+    Texture cubes_[3];
+
+  public:
+    const int finest_level = store_->metadata().finest_level;
+    const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
+    float texel_m = 0;
+    planet::StoreField field;
+    planet::StoreTiles tiles;
+    Framebuffer target;
+};
+
+World& world() {
+    static World w;
+    return w;
+}
+
+/// The strips of all segments as one list of triangles, with the patch layer as an attribute of the vertex.
+class StaticList {
+  public:
+    StaticList(const planet::Segments& segments, std::span<const std::int32_t> segment_layers, bool from_afar) {
+        ProgramOptions options;  // as TerrainPass chooses them
+        if (from_afar) options.defines.push_back("FROM_AFAR");
+        if (std::ranges::any_of(segment_layers, [](std::int32_t layer) { return layer >= 0; }))
+            options.defines.push_back("PATCHED");
+        program_ = Program::link({"terrain.vert.glsl", "terrain.frag.glsl"}, options);
+        std::vector<std::uint32_t> list;
+        std::vector<std::int32_t> layers(segments.vertices().size());
+        for (std::size_t k = 0; k < segments.segments().size(); ++k) {
+            const planet::Segment& s = segments.segments()[k];
+            const std::uint32_t* strip = segments.indices().data() + s.first_index;
+            for (std::uint32_t i = 0; i < s.index_count; ++i) layers[s.first_vertex + strip[i]] = segment_layers[k];
+            for (std::uint32_t i = 0; i + 2 < s.index_count; ++i) {
+                const std::uint32_t a = strip[i + (i & 1)], b = strip[i + 1 - (i & 1)], c = strip[i + 2];
+                if (a != b && b != c && a != c)
+                    for (const std::uint32_t v : {a, b, c}) list.push_back(s.first_vertex + v);
+            }
+        }
+        count_ = static_cast<GLsizei>(list.size());
+        indices_ = Buffer(bytes_of(list));
+        vertices_ = Buffer(bytes_of(segments.vertices()));
+        layers_ = Buffer(bytes_of(layers));
+        array_ = VertexArray::create();
+        using planet::SegmentVertex;
+        const auto grid = grid_attributes();
+        const Attribute attributes[] = {grid[0],
+                                        grid[1],
+                                        {.location = 2,
+                                         .components = 2,
+                                         .type = GL_UNSIGNED_SHORT,
+                                         .offset = offsetof(SegmentVertex, u),
+                                         .conversion = Attribute::Conversion::integer},
+                                        {.location = 3, .components = 1, .offset = offsetof(SegmentVertex, height)}};
+        array_.set_vertices(0, vertices_, sizeof(SegmentVertex), attributes);
+        const Attribute layer[] = {
+            {.location = 4, .components = 1, .type = GL_INT, .conversion = Attribute::Conversion::integer}};
+        array_.set_vertices(1, layers_, sizeof(std::int32_t), layer);
+        array_.set_indices(indices_);
+    }
+
+    void draw(const Camera& camera, const TerrainLook& look) {
+        program_.use();
+        set_grid_camera(program_, camera, part);
+        program_.set("eye", glm::vec3(camera.eye));
+        program_.set("shape", glm::vec2(look.polar_stretch, look.exaggeration));
+        program_.set("pixel_angle", static_cast<float>(1.0 / camera.focal_px));
+        program_.set("patch_range", look.patch_range);
+        array_.bind();
+        gl().Enable(GL_DEPTH_TEST);
+        gl().Enable(GL_CULL_FACE);
+        gl().DepthFunc(GL_GREATER);
+        gl().DrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
+        gl().Disable(GL_CULL_FACE);
+    }
+
+    std::size_t triangles() const { return static_cast<std::size_t>(count_) / 3; }
+
+  private:
+    Program program_;
+    VertexArray array_;
+    Buffer vertices_, indices_, layers_;
+    GLsizei count_ = 0;
+};
+
+struct View {
+    double latitude, longitude, range, heading, pitch;  // degrees, metres
+};
+// The program's default globe, and the Sangre de Cristo from 60 km.
+constexpr View globe{12, 12, 13.6e6, 0, -90}, blanca{37.58, -105.49, 60e3, 30, -25};
+
+/// A view of the world, ready to be drawn both ways.
+class Scene {
+  public:
+    explicit Scene(const View& v) {
+        const glm::dvec3 n = planet::normal_from_geodetic(v.latitude * planet::degrees, v.longitude * planet::degrees);
+        const double heading = v.heading * planet::degrees, pitch = v.pitch * planet::degrees;
+        const double ground = static_cast<double>(w.field.height(n));
+        camera = make_camera(planet::ecef_from_normal(wgs84, n, {ground}) - v.range * look_direction(n, heading, pitch),
+                             n, heading, pitch, focal_length_px(40 * planet::degrees, width, height), width, height);
+        planet::SegmentView view;
+        view.test = {camera.eye, planet::split_reach(camera.focal_px, camera.tan_corner(), 0.5)};
+        view.culling = camera.culling(part, wgs84.b - 600);
+        view.radius_m = wgs84.mean_radius();
+        view.finest_patch_level = w.finest_level - 10;
+        view.segment_angle = 96 / camera.focal_px;
+        segments.build(w.tiles, view, static_cast<int>(w.threads));
+        patches.build(segments, surface(w.field), wgs84.mean_radius(), static_cast<int>(w.threads));
+        patch_texture = patches.upload();
+        const AtmosphereTables tables = make_tables();
+        const RenderOptions defaults;
+        ViewTable air = make_view_table(tables, camera.eye, planet::sun_direction(defaults.time), w.threads);
+        air.uniforms.sky_detail.w = w.texel_m;
+        sky.set_view(tables, air, glm::mat3(1));
+        look.polar_stretch = (wgs84.a / wgs84.b) * (wgs84.a / wgs84.b);
+        look.patch_range = patch_range;
+        look.from_afar = !needs_close_up(air.uniforms, v.range, 1 / camera.focal_px);
+        w.bind(sky, camera, patch_texture);
+    }
+
+    World& w = world();  // first: the rest needs its context
+    Camera camera;
+    planet::Segments segments;
+    ReliefPatches patches;
+    TerrainLook look;
+    Texture patch_texture;
+    SkyPass sky{{}, make_noise_levels()};
+
+  private:
+    static PatchSurface surface(const planet::StoreField& field) {
+        return {.heights = [&field](auto normals, auto heights) { field.heights(normals, heights); },
+                .spacing =
+                    [&field](const glm::dvec3& normal) {
+                        planet::SurfaceCursor cursor = field.cursor();
+                        cursor.seek(normal);
+                        return planet::cell_metrics(cursor.cell().bisection_level()).vertex_spacing *
+                               wgs84.mean_radius();
+                    }};
+    }
+};
+
+double median(std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+    return v[v.size() / 2];
+}
+
+void terrain_pass_over_static_list(benchmark::State& state, const View& view) {
+    Scene scene(view);
+    World& w = scene.w;
+    TerrainPass pass;
+    pass.upload(scene.segments, scene.patches.layers());
+    StaticList list(scene.segments, scene.patches.layers(), scene.look.from_afar);
+    const auto seconds = [&](auto&& draw) {
+        w.target.clear(0, 0, 0, 1);
+        gl().Finish();
+        const auto start = std::chrono::steady_clock::now();
+        draw();
+        gl().Finish();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const auto draw_pass = [&] { pass.draw(scene.camera, part, scene.look); };
+    const auto draw_list = [&] { list.draw(scene.camera, scene.look); };
+    // Also the first time, which compiles. Both must show the same ground.
+    seconds(draw_pass);
+    const auto depth = w.target.read_depth();
+    seconds(draw_list);
+    if (w.target.read_depth() != depth) return state.SkipWithError("the list shows another surface");
+
+    std::vector<double> pass_seconds, list_seconds;
+    for (auto _ : state) {
+        pass_seconds.push_back(seconds(draw_pass));
+        list_seconds.push_back(seconds(draw_list));
+        state.SetIterationTime(pass_seconds.back());
+    }
+    state.counters["triangles"] = static_cast<double>(list.triangles());
+    state.counters["segments"] = static_cast<double>(scene.segments.segments().size());
+    state.counters["pass_ms"] = 1e3 * median(pass_seconds);
+    state.counters["list_ms"] = 1e3 * median(list_seconds);
+    state.counters["ratio"] = median(pass_seconds) / median(list_seconds);
+}
+BENCHMARK_CAPTURE(terrain_pass_over_static_list, globe, globe)
+    ->Iterations(25)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(terrain_pass_over_static_list, blanca, blanca)
+    ->Iterations(15)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
