@@ -31,6 +31,31 @@ void set_grid_camera(Program& program, const Camera& camera, const PicturePart& 
     program.set("clip_from_ecef", camera.clip_from_ecef(part));
 }
 
+void set_terrain_uniforms(Program& program, const Camera& camera, const PicturePart& part, const TerrainLook& look) {
+    set_grid_camera(program, camera, part);
+    program.set("eye", glm::vec3(camera.eye));
+    program.set("shape", glm::vec2(look.polar_stretch, look.exaggeration));
+    program.set("pixel_angle", static_cast<float>(1.0 / camera.focal_px));
+    program.set("patch_range", look.patch_range);
+}
+
+std::array<Attribute, 4> segment_attributes() {
+    using planet::SegmentVertex;
+    const auto grid = grid_attributes();
+    return {{grid[0],
+             grid[1],
+             {.location = 2,
+              .components = 2,
+              .type = GL_UNSIGNED_SHORT,
+              .offset = offsetof(SegmentVertex, u),
+              .conversion = Attribute::Conversion::integer},
+             {.location = 3, .components = 1, .offset = offsetof(SegmentVertex, height)}}};
+}
+
+Attribute layer_attribute() {
+    return {.location = 4, .components = 1, .type = GL_INT, .conversion = Attribute::Conversion::integer};
+}
+
 Program& TerrainPass::program(bool from_afar) {
     Program& p = programs_[static_cast<std::size_t>(from_afar) + 2 * static_cast<std::size_t>(patched_)];
     if (!p) {
@@ -43,7 +68,6 @@ Program& TerrainPass::program(bool from_afar) {
 }
 
 void TerrainPass::upload(const planet::Segments& segments, std::span<const std::int32_t> patch_layers) {
-    using planet::SegmentVertex;
     std::vector<DrawCommand> commands;
     commands.reserve(segments.segments().size());
     for (const planet::Segment& s : segments.segments())
@@ -57,30 +81,15 @@ void TerrainPass::upload(const planet::Segments& segments, std::span<const std::
     commands_ = Buffer(bytes_of(commands));
 
     array_ = VertexArray::create();
-    const auto grid = grid_attributes();
-    const Attribute per_vertex[] = {grid[0],
-                                    grid[1],
-                                    {.location = 2,
-                                     .components = 2,
-                                     .type = GL_UNSIGNED_SHORT,
-                                     .offset = offsetof(SegmentVertex, u),
-                                     .conversion = Attribute::Conversion::integer},
-                                    {.location = 3, .components = 1, .offset = offsetof(SegmentVertex, height)}};
-    array_.set_vertices(0, vertices_, sizeof(SegmentVertex), per_vertex);
-    const Attribute per_segment[] = {
-        {.location = 4, .components = 1, .type = GL_INT, .conversion = Attribute::Conversion::integer}};
-    array_.set_vertices(1, layers_, sizeof(std::int32_t), per_segment, 1);
+    array_.set_vertices(0, vertices_, sizeof(planet::SegmentVertex), segment_attributes());
+    array_.set_vertices(1, layers_, sizeof(std::int32_t), std::array{layer_attribute()}, 1);
     array_.set_indices(indices_);
 }
 
 void TerrainPass::draw(const Camera& camera, const PicturePart& part, const TerrainLook& look) {
     Program& p = program(look.from_afar);
     p.use();
-    set_grid_camera(p, camera, part);
-    p.set("eye", glm::vec3(camera.eye));
-    p.set("shape", glm::vec2(look.polar_stretch, look.exaggeration));
-    p.set("pixel_angle", static_cast<float>(1.0 / camera.focal_px));
-    p.set("patch_range", look.patch_range);
+    set_terrain_uniforms(p, camera, part, look);
     array_.bind();
     commands_.bind(GL_DRAW_INDIRECT_BUFFER);
     gl().Enable(GL_DEPTH_TEST);

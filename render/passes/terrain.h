@@ -43,6 +43,13 @@ class TerrainPass {
 /// Sets the uniforms of grid.glsl and clip_from_ecef.
 void set_grid_camera(Program& program, const Camera& camera, const PicturePart& part);
 
+/// Sets every uniform of the terrain shaders.
+void set_terrain_uniforms(Program& program, const Camera& camera, const PicturePart& part, const TerrainLook& look);
+
+/// The attributes of terrain.vert.glsl: of a SegmentVertex, and of a patch layer (an int32).
+std::array<Attribute, 4> segment_attributes();
+Attribute layer_attribute();
+
 /// The attributes of grid.glsl in a vertex whose first 16 bytes are a GridPosition.
 std::array<Attribute, 2> grid_attributes();
 

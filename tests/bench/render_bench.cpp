@@ -108,30 +108,14 @@ class StaticList {
         vertices_ = Buffer(bytes_of(segments.vertices()));
         layers_ = Buffer(bytes_of(layers));
         array_ = VertexArray::create();
-        using planet::SegmentVertex;
-        const auto grid = grid_attributes();
-        const Attribute attributes[] = {grid[0],
-                                        grid[1],
-                                        {.location = 2,
-                                         .components = 2,
-                                         .type = GL_UNSIGNED_SHORT,
-                                         .offset = offsetof(SegmentVertex, u),
-                                         .conversion = Attribute::Conversion::integer},
-                                        {.location = 3, .components = 1, .offset = offsetof(SegmentVertex, height)}};
-        array_.set_vertices(0, vertices_, sizeof(SegmentVertex), attributes);
-        const Attribute layer[] = {
-            {.location = 4, .components = 1, .type = GL_INT, .conversion = Attribute::Conversion::integer}};
-        array_.set_vertices(1, layers_, sizeof(std::int32_t), layer);
+        array_.set_vertices(0, vertices_, sizeof(planet::SegmentVertex), segment_attributes());
+        array_.set_vertices(1, layers_, sizeof(std::int32_t), std::array{layer_attribute()});
         array_.set_indices(indices_);
     }
 
     void draw(const Camera& camera, const TerrainLook& look) {
         program_.use();
-        set_grid_camera(program_, camera, part);
-        program_.set("eye", glm::vec3(camera.eye));
-        program_.set("shape", glm::vec2(look.polar_stretch, look.exaggeration));
-        program_.set("pixel_angle", static_cast<float>(1.0 / camera.focal_px));
-        program_.set("patch_range", look.patch_range);
+        set_terrain_uniforms(program_, camera, part, look);
         array_.bind();
         gl().Enable(GL_DEPTH_TEST);
         gl().Enable(GL_CULL_FACE);
