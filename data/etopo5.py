@@ -22,6 +22,38 @@ OCEANIA = dict(rows=(1,), columns=(-2,))  # 12.5' west and 2.5' south
 
 COAST = 3  # cells from the sea within which land below 0 is taken for a sample of the sea
 
+# Single samples of the land survey that are wrong: row and column of the source, what it has there, and how many nodes
+# away the next samples of the survey are.
+WRONG = (
+    (246, 2870, 3205, 1),  # the Melville Hills, Canada, between 120 and 460 m
+    (351, 2727, 2715, 1),  # the Yukon, between 1014 and 1293 m
+    (856, 1221, -1006, 2),  # Laos, between 366 and 671 m
+    (920, 1309, 1981, 2),  # the coast of Vietnam, between 30 and 122 m
+)
+
+# Lakes whose beds are in the source, wholly or in part: level of the water (metres; rounded long-term means), then south,
+# north, west and east of a box without the ground below the outlet. All other ground around a lake is above it.
+LAKES = (
+    (183, 46.40, 49.10, -92.20, -84.50),  # Superior
+    (176, 41.60, 46.20, -87.95, -84.80),  # Michigan
+    (176, 43.10, 46.35, -84.80, -81.30),  # Huron
+    (176, 44.40, 46.10, -81.60, -79.60),  # Georgian Bay
+    (174, 41.35, 42.85, -83.50, -78.90),  # Erie
+    (75, 43.15, 44.15, -79.85, -76.30),  # Ontario
+    (156, 65.30, 67.00, -125.00, -117.50),  # Great Bear Lake
+    (156, 64.70, 65.30, -123.30, -117.50),
+    (156, 60.80, 62.90, -116.20, -109.00),  # Great Slave Lake
+    (5, 60.40, 61.80, 29.90, 33.00),  # Ladoga
+    (5, 59.90, 60.40, 31.10, 33.00),
+    (33, 61.20, 62.90, 34.10, 36.50),  # Onega
+    (32, 11.40, 12.15, -85.85, -84.95),  # Nicaragua
+    (32, 11.15, 11.40, -85.65, -84.95),
+    (-430, 30.90, 32.30, 35.30, 35.65),  # the Dead Sea and the valley above it
+    (-212, 32.65, 32.95, 35.50, 35.70),  # the Sea of Galilee
+    (-71, 32.75, 33.90, -116.50, -115.20),  # the Salton Sea and the valleys above it
+    (-30, 36.50, 39.00, 48.50, 54.20),  # the south of the Caspian, at the level that it has in the source elsewhere
+)
+
 
 def read_source(folder):
     values = gdal.Open(f"NETCDF:{folder}/etopo5.cdf:ROSE").ReadAsArray()
@@ -33,6 +65,11 @@ def read_source(folder):
     interpolate_rows(heights[:, :480], 2055, 2055)
     # Arnhem Land lies under water for four rows.
     interpolate_rows(heights[:, 1566:1632], 1235, 1238)
+    for row, column, height, step in WRONG:
+        if heights[row, column] != height:
+            raise SystemExit(f"etopo5.cdf: {heights[row, column]} at row {row}, column {column}, not {height}")
+        next_ones = heights[[row - step, row + step, row, row], [column, column, column - step, column + step]]
+        heights[row, column] = next_ones[next_ones > 0].mean()
     return heights
 
 
@@ -111,8 +148,18 @@ def land_heights(heights, mask):
         return numpy.where(coarse, coarse_land(heights, wanted), fine)
 
     near_sea = around(mask == 0, COAST) > 0.5
+    near_sea[150 * ROWS // 180 :] = True  # in Antarctica no ground below 0 is free of ice or water
     cells = numpy.where(near_sea, placed(heights > 0), placed(numpy.ones_like(heights, bool)))
     return filled(cells, mask == 1, 1)
+
+
+def fill_lakes(heights, mask):
+    """Raises land below the level of its lake."""
+    for level, south, north, west, east in LAKES:
+        rows = numpy.arange(round((90 - north) * 12), round((90 - south) * 12))
+        columns = numpy.arange(round(west * 12), round(east * 12)) % COLUMNS
+        box = numpy.ix_(rows, columns)
+        heights[box] = numpy.where(mask[box] == 1, numpy.maximum(heights[box], level), heights[box])
 
 
 def sea_heights(heights, mask):
@@ -135,6 +182,7 @@ def main(folder, mask_file, output):
     heights = read_source(folder)
     mask = numpy.roll(gdal.Open(mask_file).ReadAsArray(), COLUMNS // 2, axis=1)  # from longitude 0, as the source
     merged = numpy.where(mask == 1, land_heights(heights, mask), sea_heights(heights, mask))
+    fill_lakes(merged, mask)
     merged = numpy.roll(numpy.rint(merged).astype(numpy.int16), COLUMNS // 2, axis=1)
 
     options = ["COMPRESS=DEFLATE", "PREDICTOR=2", "ZLEVEL=9", "BLOCKYSIZE=24"]

@@ -133,6 +133,28 @@ TEST(Data, ReliefIsWithoutTheStripesOfItsSource) {
     EXPECT_GT(relief_at(-13.05, 133.85), 200);  // Arnhem Land, drowned in the source
 }
 
+TEST(Data, ReliefHasLakesAtTheirLevels) {
+    EXPECT_EQ(relief_at(47.7, -87.5), 183);    // Superior
+    EXPECT_EQ(relief_at(43.5, -87.0), 176);    // Michigan
+    EXPECT_EQ(relief_at(43.6, -77.8), 75);     // Ontario
+    EXPECT_EQ(relief_at(66.29, -118.0), 156);  // Great Bear Lake, 440 m below the sea in the source
+    EXPECT_EQ(relief_at(61.0, 31.5), 5);       // Ladoga
+    EXPECT_EQ(relief_at(31.5, 35.5), -430);    // the Dead Sea, the lowest land of all
+    EXPECT_EQ(relief_at(36.96, 50.96), -30);   // the south coast of the Caspian
+    for (int row = 0; row < relief().height; ++row)
+        for (int column = 0; column < relief().width; ++column) {
+            if (land_mask().at(column, row) == 0) continue;
+            ASSERT_GE(relief().at(column, row), row < 1800 ? -430 : 0) << column << ' ' << row;  // 1800: 60 S
+        }
+}
+
+TEST(Data, ReliefIsWithoutTheSingleFaultsOfItsSource) {
+    EXPECT_NEAR(relief_at(69.46, -120.71), 300, 200);   // the Melville Hills, 3205 m in the source
+    EXPECT_NEAR(relief_at(60.71, -132.62), 1200, 300);  // the Yukon, 2715 m
+    EXPECT_NEAR(relief_at(18.58, 101.9), 450, 200);     // Laos, -1006 m
+    EXPECT_NEAR(relief_at(13.25, 109.25), 100, 100);    // the coast of Vietnam, 1981 m
+}
+
 /// Heights of 5' cells against means of a 3" model, with the cells taken from `columns` and `rows` beside their place.
 double agreement_with_mountains(int columns, int rows) {
     const Raster& fine = mountains();

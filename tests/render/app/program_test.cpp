@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,10 @@ struct BadCall {
     int status;
     const char* line;  ///< what the one line on standard error begins with
 };
+
+void PrintTo(const BadCall& call, std::ostream* out) {
+    *out << call.arguments;
+}
 
 class BadCalls : public testing::TestWithParam<BadCall> {};
 
