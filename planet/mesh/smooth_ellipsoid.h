@@ -36,7 +36,7 @@ class SmoothEllipsoid {
     explicit SmoothEllipsoid(const Ellipsoid& ellipsoid) : ellipsoid_(ellipsoid) {}
 
     /// Replaces the mesh by the leaves of SplitTest{eye, K} (view.h) over the bounds, in Sierpinski order. Without
-    /// branches on data that is far from any limit: some nine in ten leaves come in blocks of equal level, whose
+    /// branches on data that is far from any limit: some four in five leaves come in blocks of equal level, whose
     /// split vertices and strip are made at once.
     /// @param eye ecef, metres @param K metres of distance per metre of deviation
     void refine(std::span<const LevelBounds> bounds, const glm::dvec3& eye, double K);
