@@ -1,5 +1,6 @@
 // octaglobe render: a picture.
 
+#include <iostream>
 #include <memory>
 
 #include "render/app/picture.h"
@@ -42,6 +43,7 @@ void fill(Report& report, const RenderOptions& options, const PictureReport& pic
     report.set("deviation_max_m", picture.deviation_max_m);
     report.set("pixel_deviation_max", picture.pixel_deviation_max);
     report.set("pixel_deviation_bound", options.max_pixel_deviation);
+    report.set("damaged_tiles_met", picture.damaged);
     report.set("exaggeration", options.exaggeration);
     report.set("crs", picture.crs);
     report.set("vertical_datum", picture.vertical_datum);
@@ -70,7 +72,10 @@ void add_render(CLI::App& program) {
         Report report("render", options->json);
         // Refuses an output that cannot be written before the work, not after it.
         { const OutputFile writable("--output", render.output); }
-        fill(report, render, draw_picture(render));
+        const PictureReport picture = draw_picture(render);
+        if (picture.damaged)
+            std::cerr << "octaglobe: warning: tiles of the store are damaged; coarser ones stand in for them\n";
+        fill(report, render, picture);
         report.write();
     });
 }

@@ -52,7 +52,10 @@ std::shared_ptr<const ElevationStore> open_earth_store(const EarthSources& sourc
                           std::to_string(planet::store_format_version) + ".octa");
         if (std::filesystem::exists(file)) {
             try {
-                return std::make_shared<const ElevationStore>(ElevationStore::open(file));
+                auto store = std::make_shared<const ElevationStore>(ElevationStore::open(file));
+                for (int face = 0; face < planet::face_count; ++face)
+                    static_cast<void>(store->read(planet::LocationCode::face_root(face)));
+                return store;
             } catch (const planet::Error&) {
                 // Damaged: bake it anew.
             }
