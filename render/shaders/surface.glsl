@@ -1,6 +1,6 @@
 // Radiance of the planet's surface: land, sea, snow, night. Also C++, see atmosphere.glsl, which comes first.
 //
-// Define FROM_AFAR where every pixel is wider than 0.15 texels of the imagery (sky_detail.w): the picture is the same,
+// Define FROM_AFAR where every pixel is wider than 0.4 texels of the imagery (sky_detail.w): the picture is the same,
 // and software renderers, which run every branch and the first turn of every loop whether or not a pixel
 // takes it, save two fifths of the time.
 
@@ -23,14 +23,21 @@ float luminance(vec3 c) {
     return dot(c, vec3(0.2126f, 0.7152f, 0.0722f));
 }
 
-/// Light of city lamps from a night-light value 0..1 (the square root of the light): the colour of sodium.
+/// Light of city lamps from a night-light value 0..1 (the square root of the light): sodium in the outskirts, and so
+/// bright in the middle of cities that it bleaches.
 vec3 lamps(float value) {
-    return vec3(1.0f, 0.72f, 0.39f) * (value * value);
+    float light = value * value;
+    return mix(vec3(1.0f, 0.56f, 0.22f), vec3(1.0f, 0.80f, 0.52f), light) * (light * (0.25f + 1.75f * light));
 }
 
 /// How far the imagery's own texels are magnified: 0 where they are as fine as pixels, 1 where one covers thousands.
 float close_up(float footprint) {
     return 1.0f - smoothstep(log2(sky_detail.w * 0.005f), log2(sky_detail.w * 0.15f), log2(max(footprint, 1.0e-3f)));
+}
+
+/// 0 from afar, where FROM_AFAR is, to 1 where a texel covers a hundred pixels.
+float magnified(float footprint) {
+    return 1.0f - smoothstep(sky_detail.w * 0.08f, sky_detail.w * 0.4f, footprint);
 }
 
 /// Noise at the planet-fixed point beside the eye, with the finest features at about two pixels whatever the distance:
@@ -42,9 +49,11 @@ vec4 detail_noise(vec3 view, float footprint) {
     return mix(texture(noise_table, p), texture(noise_table, p * 0.5f), fract(level)) * 2.0f - vec4(1.0f);
 }
 
-/// Noise with features of `size` metres and a few octaves below, as far as the footprint allows.
-float patch_noise(vec3 view, float size) {
-    return texture(noise_table, (vec3(sky_detail) + view) / (4.0f * size)).w * 2.0f - 1.0f;
+/// Noise with features of `size` metres and three octaves below, as far as the footprint allows. @param size a power of two up
+/// to 2^15: its period, 4 sizes, then divides that of sky_detail, and the pattern stays where it is as the eye moves.
+/// rgb: gradient -1..1, a: value -1..1
+vec4 patch_noise(vec3 view, float size) {
+    return texture(noise_table, (vec3(sky_detail) + view) / (4.0f * size)) * 2.0f - vec4(1.0f);
 }
 
 /// Heights in metres at which forest ends and snow stays, by |sine of the latitude|: straight lines through the
@@ -53,38 +62,54 @@ float treeline_at(float sin_latitude) {
     return clamp(3600.0f - (sin_latitude - 0.609f) * 11200.0f, -400.0f, 4100.0f);
 }
 
+/// Sine of the slope towards the nearer pole: where snow stays longest. Fades to 0 at the equator.
+float poleward(SurfaceInput s) {
+    float rise = s.terrain_normal.z - s.normal.z * dot(s.terrain_normal, s.normal);
+    return rise / max(sqrt(1.0f - s.normal.z * s.normal.z), 0.05f) * clamp(s.normal.z * 8.0f, -1.0f, 1.0f);
+}
+
 /// What one stands on where imagery has no more to say: colour from height, slope, latitude and the imagery's hue.
 /// @param steep cosine of the slope   @param large, small noise -1..1
 vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
     float lum = max(luminance(s.imagery), 0.004f);
     // Forest is dark in any imagery, and drought is yellow and bright.
     float dry = smoothstep(0.75f, 1.3f, s.imagery.r / max(s.imagery.g, 0.004f)) * smoothstep(0.025f, 0.085f, lum);
-    float treeline = treeline_at(abs(s.normal.z)) + 220.0f * large;
+    float treeline = treeline_at(abs(s.normal.z)) + 180.0f * large;
     float h = s.height + 60.0f * small;
 
-    // Soil and grass keep the imagery's hue, at a brightness that ground has.
+    // Meadow, or steppe with its shrubs, or the brown turf above the trees; all take some of the imagery's hue.
     vec3 hue = s.imagery / lum;
-    vec3 grass = mix(hue, vec3(1.05f, 1.06f, 0.55f), 0.45f) * mix(0.075f, 0.15f, dry) * (1.0f + 0.3f * large);
-    vec3 trees = mix(vec3(0.030f, 0.045f, 0.018f), hue * 0.048f, 0.4f) * (1.0f + 0.55f * small);
-    vec3 scree = mix(vec3(0.165f, 0.152f, 0.138f), hue * 0.15f, 0.35f);
-    vec3 rock = mix(vec3(0.105f, 0.096f, 0.089f), hue * 0.095f, 0.35f);
-    vec3 snow = vec3(0.78f, 0.82f, 0.88f);
+    float tuft = smoothstep(0.12f, 0.5f, small);
+    vec3 meadow = mix(vec3(0.072f, 0.084f, 0.036f), hue * 0.075f, 0.3f);
+    vec3 steppe = mix(vec3(0.235f, 0.198f, 0.138f), hue * 0.19f, 0.4f);
+    steppe = mix(steppe, vec3(0.098f, 0.098f, 0.066f), 0.75f * tuft);
+    vec3 turf = mix(vec3(0.125f, 0.116f, 0.066f), vec3(0.105f, 0.118f, 0.052f), smoothstep(-0.4f, 0.4f, large));
+    vec3 open = mix(mix(meadow, steppe, dry), turf, smoothstep(treeline - 350.0f, treeline + 50.0f, h));
+    open *= 1.0f + 0.28f * large + 0.3f * small;
+    vec3 trees = mix(vec3(0.026f, 0.038f, 0.019f), hue * 0.040f, 0.3f) * (1.0f + 0.6f * small);
+    vec3 scree = mix(vec3(0.190f, 0.172f, 0.152f), hue * 0.17f, 0.25f);
+    vec3 rock = mix(vec3(0.118f, 0.106f, 0.096f), hue * 0.105f, 0.25f);
+    vec3 snow = vec3(0.80f, 0.83f, 0.88f);
 
-    float below = 1.0f - smoothstep(treeline - 170.0f, treeline + 110.0f, h);
-    float wet = max(1.0f - dry, 0.85f * smoothstep(treeline - 1500.0f, treeline - 600.0f, h + 350.0f * large));
-    float stand = smoothstep(-0.35f, 0.25f, large * 0.7f + small * 0.6f + 0.9f * wet - 0.45f);
-    vec3 cover = mix(grass * (1.0f + 0.42f * small), trees, below * wet * stand * smoothstep(0.55f, 0.75f, steep));
-    float bare = smoothstep(treeline + 150.0f, treeline + 700.0f, h + 250.0f * small);
-    bare = max(bare, 1.0f - smoothstep(0.76f, 0.86f, steep + 0.05f * small));
-    float cliff = 1.0f - smoothstep(0.64f, 0.80f, steep + 0.08f * small);
-    cover = mix(cover, mix(scree, rock, cliff) * (1.0f + 0.35f * small), bare);
+    float below = 1.0f - smoothstep(treeline - 170.0f, treeline + 60.0f, h);
+    float wet = max(1.0f - dry, 0.85f * smoothstep(treeline - 1200.0f, treeline - 500.0f, h + 350.0f * large));
+    float stand = smoothstep(-0.3f, 0.1f, large * 0.7f + small * 0.7f + 0.9f * wet - 0.4f);
+    vec3 cover = mix(open, trees, below * wet * stand * smoothstep(0.55f, 0.75f, steep));
+    float bare = smoothstep(treeline + 40.0f, treeline + 460.0f, h + 260.0f * small + 120.0f * large);
+    bare = max(bare, 1.0f - smoothstep(0.76f, 0.87f, steep + 0.06f * small));
+    float cliff = 1.0f - smoothstep(0.66f, 0.84f, steep + 0.1f * small);
+    cover = mix(cover, mix(scree, rock, cliff) * (1.0f + 0.4f * small + 0.15f * large), bare);
 
-    float snowline = treeline + mix(800.0f, 1100.0f, dry);
-    float lies = smoothstep(0.66f, 0.84f, steep + 0.08f * small);
-    float white = smoothstep(snowline - 150.0f, snowline + 350.0f, h + 320.0f * small) * lies;
+    // Snow for good high up; its remnants lie lower, in patches, mostly on slopes that face away from the noon sun.
+    float away = poleward(s);
+    float snowline = treeline + mix(800.0f, 1100.0f, dry) - 250.0f * clamp(2.0f * away, -1.0f, 1.0f);
+    float lies = smoothstep(0.66f, 0.80f, steep + 0.08f * small);
+    float white = smoothstep(snowline - 100.0f, snowline + 300.0f, h + 320.0f * small);
+    float remnant = smoothstep(0.30f, 0.42f, 0.75f * small + 0.35f * large + 0.8f * away);
+    white = max(white, remnant * smoothstep(treeline + 60.0f, treeline + 420.0f, h));
     // Ice in the imagery (bright and not yellow) is believed anywhere it can lie.
     float ice = smoothstep(0.42f, 0.62f, lum) * smoothstep(0.80f, 0.92f, s.imagery.b / max(s.imagery.r, 0.01f));
-    return mix(cover, snow * (1.0f + 0.06f * small), max(white, ice * lies));
+    return mix(cover, snow * (1.0f + 0.06f * small), max(white, ice) * lies);
 }
 
 /// Reflectance of water towards the eye for a mirror facet: Schlick, index 1.34.
@@ -94,27 +119,33 @@ float fresnel_water(float cosine) {
     return 0.0211f + 0.9789f * c2 * c2 * c;
 }
 
+/// Density of wave facets whose normal has a cosine c with the vertical, for a mean square slope: a Gaussian.
+float facets(float c, float slope2) {
+    float c2 = c * c;
+    return exp(-(1.0f - c2) / (c2 * slope2)) / (3.14159265f * slope2 * c2 * c2);
+}
+
 /// The sea: light from below its surface, the sun's glint off slopes spread as Cox and Munk (1954) measured against the
 /// wind, and the sky in it. @param to_eye unit, ecef
 vec3 sea_radiance(SurfaceInput s, Light light, vec3 to_eye, vec3 color) {
     vec3 sun = vec3(sky_sun);
     float cos_view = dot(s.normal, to_eye);
     float cos_sun = dot(s.normal, sun);
-    float slope2 = 0.003f + 0.00512f * sky_sunlight.w;
     vec3 between = sun + to_eye;
     vec3 facet = between / max(sqrt(dot(between, between)), 1.0e-4f);
     float c = max(dot(s.normal, facet), 0.05f);
-    float c2 = c * c;
-    float spread = exp(-(1.0f - c2) / (c2 * slope2)) / (3.14159265f * slope2 * c2 * c2);
+    // Winds differ from place to place: a calm part gives the bright core, the rough one the wide skirt.
+    float slope2 = 0.003f + 0.00512f * sky_sunlight.w;
+    float spread = mix(facets(c, slope2), facets(c, 0.003f + 0.0009f * sky_sunlight.w), 0.4f);
     // Grazing views see waves that face them: the mean visible slope keeps both cosines off zero.
     float rough = sqrt(slope2) * 0.5f;
     float glint = fresnel_water(dot(facet, to_eye)) * spread / (4.0f * max(cos_view, rough) + 4.0f * rough);
-    glint = min(glint, 40.0f) * smoothstep(-0.02f, 0.06f, cos_sun);
+    glint = min(glint, 4.0f) * smoothstep(-0.02f, 0.06f, cos_sun);
 
     float mirror = fresnel_water(sqrt(max(cos_view, 0.0f) * max(cos_view, 0.0f) + rough * rough * 4.0f));
     vec3 sky = light.sky * (0.3183099f * mix(1.0f, 1.7f, 1.0f - clamp(cos_view * 2.0f, 0.0f, 1.0f)));
     vec3 below = color * 0.3183099f * (light.sun * max(cos_sun, 0.0f) + light.sky) * (1.0f - mirror);
-    return below + sky * mirror + light.sun * glint * 0.3183099f * 3.14159265f;
+    return below + sky * mirror + light.sun * glint;
 }
 
 /// Radiance that leaves the surface towards the eye; the air before it is aerial()'s.
@@ -134,8 +165,9 @@ vec3 surface_radiance(SurfaceInput s) {
     near = close_up(s.footprint);
     {
         vec4 fine = detail_noise(s.view, s.footprint);
-        float large = patch_noise(s.view, 2800.0f) + 0.5f * patch_noise(s.view, 230.0f);
-        float small = 0.6f * fine.w + 0.4f * patch_noise(s.view, 230.0f) + 0.7f * patch_noise(s.view, 14.0f);
+        float middle = patch_noise(s.view, 256.0f).w;
+        float large = patch_noise(s.view, 2048.0f).w + 0.5f * middle;
+        float small = 0.6f * fine.w + 0.4f * middle + 0.7f * patch_noise(s.view, 16.0f).w;
         // Bumps stand for what is finer than any elevation data: none from afar, few on the plains.
         vec3 bump = vec3(fine) - dot(vec3(fine), ground) * ground;
         float rough = (1.0f - smoothstep(15.0f, 150.0f, s.footprint)) * min(0.25f + 2.5f * (1.0f - dot(ground, s.normal)), 1.0f);
@@ -157,7 +189,9 @@ vec3 surface_radiance(SurfaceInput s) {
     vec3 day = mix(land, sea, water);
 
     float dark = 1.0f - smoothstep(-0.14f, 0.03f, sun_cosine);
-    vec3 cities = s.night * (sky_exposure.y * dark);
+    // Streets between houses are hidden from low angles.
+    float seen = smoothstep(0.0f, 0.35f, dot(s.normal, to_eye));
+    vec3 cities = lamps(sqrt(max(s.night.r, 0.0f))) * (sky_exposure.y * dark * seen);
     vec3 ambient = mix(albedo, vec3(0.02f, 0.03f, 0.05f), water) * vec3(0.75f, 0.9f, 1.2f) * sky_exposure.z;
     return day + cities + ambient;
 }

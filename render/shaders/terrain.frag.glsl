@@ -26,8 +26,16 @@ void main() {
     SurfaceInput s;
     s.view = view;
     s.normal = normalize(vec3(place.xy, place.z * shape.x));
+    s.footprint = length(view) * pixel_angle;
+#ifdef FROM_AFAR
     vec4 day = texture(day_cube, s.normal);
     s.imagery = day.rgb;
+#else
+    // Magnified texels are blobs: noise frays their borders by less than a texel and gives their insides grain.
+    vec4 grain = patch_noise(view, 8192.0) * magnified(s.footprint);
+    vec4 day = texture(day_cube, s.normal + grain.xyz * (0.45 * sky_detail.w / length(eye)));
+    s.imagery = day.rgb * (1.0 + 0.35 * grain.w);
+#endif
     s.water = day.a;
     s.night = texture(night_cube, s.normal).rgb;
     vec3 offset = texture(relief_cube, s.normal).xyz * 0.5;
@@ -38,7 +46,6 @@ void main() {
 #endif
     s.terrain_normal = normalize(s.normal + offset * shape.y);
     s.height = orthometric;
-    s.footprint = length(view) * pixel_angle;
     vec3 radiance = aerial(surface_radiance(s), view);
     color = vec4(display_from_radiance(radiance, gl_FragCoord.xy + sky_picture.xy), 1.0);
 }

@@ -8,7 +8,7 @@
 //
 // Model: Rayleigh and Mie scattering with exponential profiles, ozone with a tent profile (Bruneton 2017's values for
 // Earth), one order of scattering exact, all higher ones isotropic (Hillaire, "A Scalable and Production Ready Sky and
-// Atmosphere Rendering Technique", 2020). Channels are narrow bands at 640, 550 and 455 nm,
+// Atmosphere Rendering Technique", 2020). Channels are narrow bands at 650, 545 and 465 nm,
 // nearer to the primaries of sRGB than the usual 680 and 440: haze is blue over sand, not violet. No refraction: the
 // ground sphere lies 500 m below the ellipsoid (below the Dead Sea, and 0.7 degrees of dip at the sea, close to the
 // 0.57 degrees that refraction lifts the sun), so terrain always covers its horizon.
@@ -55,7 +55,7 @@ struct Atmosphere {
     double polar_radius = 6356752.314245179;
     double depth_below = 500.0;  ///< the ground sphere lies this far below the ellipsoid
     double thickness = 100.0e3;  ///< the air ends this far above the ground sphere
-    glm::dvec3 rayleigh{7.39e-6, 13.558e-6, 28.9e-6};
+    glm::dvec3 rayleigh{5.88e-6, 12.06e-6, 23.05e-6};  ///< A. Bucholtz 1995, 15 C
     double rayleigh_scale_height = 8000.0;
     double mie_scattering = 3.996e-6;
     double mie_extinction = 4.44e-6;
@@ -133,7 +133,7 @@ float exposure_for(const AtmosphereTables& tables, const glm::dvec3& eye, const 
 /// FROM_AFAR defined and give the same picture.
 /// @param height least distance from the eye to the ground, m   @param pixel_angle of the picture's middle, rad
 inline bool needs_close_up(const SkyUniforms& uniforms, double height, double pixel_angle) {
-    return height * pixel_angle < 0.15 * double(uniforms.sky_detail.w);
+    return height * pixel_angle < 0.4 * double(uniforms.sky_detail.w);
 }
 
 /// ecef to the space of the tables: z stretched by a/b.
