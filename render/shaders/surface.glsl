@@ -27,7 +27,7 @@ float luminance(vec3 c) {
 /// bright in the middle of cities that it bleaches.
 vec3 lamps(float value) {
     float light = value * value;
-    return mix(vec3(1.0f, 0.56f, 0.22f), vec3(1.0f, 0.80f, 0.52f), light) * (light * (0.25f + 1.75f * light));
+    return mix(vec3(1.0f, 0.60f, 0.27f), vec3(1.0f, 0.80f, 0.54f), light) * (light * (0.7f + 2.3f * light));
 }
 
 /// How far the imagery's own texels are magnified: 0 where they are as fine as pixels, 1 where one covers thousands.
@@ -79,10 +79,11 @@ vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
 
     // Meadow, or steppe with its shrubs, or the brown turf above the trees; all take some of the imagery's hue.
     vec3 hue = s.imagery / lum;
-    float tuft = smoothstep(0.12f, 0.5f, small);
+    // Shrubs as far as they can be told apart, then their mean.
+    float tuft = mix(smoothstep(0.0f, 0.35f, small), 0.35f, smoothstep(0.25f, 1.5f, s.footprint));
     vec3 meadow = mix(vec3(0.072f, 0.084f, 0.036f), hue * 0.075f, 0.3f);
-    vec3 steppe = mix(vec3(0.235f, 0.198f, 0.138f), hue * 0.19f, 0.4f);
-    steppe = mix(steppe, vec3(0.098f, 0.098f, 0.066f), 0.75f * tuft);
+    vec3 steppe = mix(vec3(0.235f, 0.205f, 0.140f), hue * 0.20f, 0.3f);
+    steppe = mix(steppe, vec3(0.098f, 0.100f, 0.066f), 0.8f * tuft);
     vec3 turf = mix(vec3(0.125f, 0.116f, 0.066f), vec3(0.105f, 0.118f, 0.052f), smoothstep(-0.4f, 0.4f, large));
     vec3 open = mix(mix(meadow, steppe, dry), turf, smoothstep(treeline - 350.0f, treeline + 50.0f, h));
     open *= 1.0f + 0.28f * large + 0.3f * small;
@@ -105,7 +106,7 @@ vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
     float snowline = treeline + mix(800.0f, 1100.0f, dry) - 250.0f * clamp(2.0f * away, -1.0f, 1.0f);
     float lies = smoothstep(0.66f, 0.80f, steep + 0.08f * small);
     float white = smoothstep(snowline - 100.0f, snowline + 300.0f, h + 320.0f * small);
-    float remnant = smoothstep(0.30f, 0.42f, 0.75f * small + 0.35f * large + 0.8f * away);
+    float remnant = smoothstep(0.30f, 0.42f, 0.5f * small + 0.5f * large + 0.8f * away);
     white = max(white, remnant * smoothstep(treeline + 60.0f, treeline + 420.0f, h));
     // Ice in the imagery (bright and not yellow) is believed anywhere it can lie.
     float ice = smoothstep(0.42f, 0.62f, lum) * smoothstep(0.80f, 0.92f, s.imagery.b / max(s.imagery.r, 0.01f));
@@ -167,7 +168,7 @@ vec3 surface_radiance(SurfaceInput s) {
         vec4 fine = detail_noise(s.view, s.footprint);
         float middle = patch_noise(s.view, 256.0f).w;
         float large = patch_noise(s.view, 2048.0f).w + 0.5f * middle;
-        float small = 0.6f * fine.w + 0.4f * middle + 0.7f * patch_noise(s.view, 16.0f).w;
+        float small = 0.6f * fine.w + 0.4f * middle + 0.7f * patch_noise(s.view, 8.0f).w;
         // Bumps stand for what is finer than any elevation data: none from afar, few on the plains.
         vec3 bump = vec3(fine) - dot(vec3(fine), ground) * ground;
         float rough = (1.0f - smoothstep(15.0f, 150.0f, s.footprint)) * min(0.25f + 2.5f * (1.0f - dot(ground, s.normal)), 1.0f);
@@ -175,7 +176,7 @@ vec3 surface_radiance(SurfaceInput s) {
         ground = normalize(ground - bump * (0.35f * near * rough));
         albedo = mix(albedo, cover, near);
         float shore = smoothstep(0.35f, 0.65f, s.water + (s.height < 0.5f ? 0.3f : -0.15f));
-        water = mix(water, shore, near);
+        water = mix(water, shore, max(near, magnified(s.footprint)));
     }
 #endif
 

@@ -32,9 +32,9 @@ void main() {
     s.imagery = day.rgb;
 #else
     // Magnified texels are blobs: noise frays their borders by less than a texel and gives their insides grain.
-    vec4 grain = patch_noise(view, 8192.0) * magnified(s.footprint);
+    vec4 grain = patch_noise(view, 16384.0) * magnified(s.footprint);
     vec4 day = texture(day_cube, s.normal + grain.xyz * (0.45 * sky_detail.w / length(eye)));
-    s.imagery = day.rgb * (1.0 + 0.35 * grain.w);
+    s.imagery = day.rgb * (1.0 + 0.22 * grain.w);
 #endif
     s.water = day.a;
     s.night = texture(night_cube, s.normal).rgb;

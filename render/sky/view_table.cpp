@@ -278,7 +278,7 @@ SkyUniforms uniforms_of(const AtmosphereTables& tables, const View& v, const dve
     u.sky_sun = {sun, std::cos(air.sun_angular_radius)};
     u.sky_sunlight = {std::numbers::pi * dvec3(1), 7.0};
     u.sky_detail = {eye - period * glm::floor(eye / period), 9784.0};
-    u.sky_exposure = {exposure_for(tables, eye, sun), 4.0, 0.0015, 0.0};
+    u.sky_exposure = {exposure_for(tables, eye, sun), 4.0, 0.003, 0.0};
     u.sky_picture = {0, 0, 1, 0.001};
     return u;
 }
@@ -320,7 +320,7 @@ float exposure_for(const AtmosphereTables& tables, const dvec3& eye, const dvec3
         return double(tables.sky_light.at(k, 0).g) + double(tables.sun_light.at(k, 0).g) * std::max(mu, 0.0);
     };
     const double light = std::max(level(i) + (level(i + 1) - level(i)) * (x - i), 2e-4);
-    const double full = 0.8, low = 1 - smooth(std::log(60e3), std::log(6e6), std::log(std::max(r - profile.ground(), 1.0)));
+    const double full = 0.8, low = 1 - smooth(std::log(60e3), std::log(2e7), std::log(std::max(r - profile.ground(), 1.0)));
     return static_cast<float>(std::pow(std::max(full / light, 1.0), 0.45 * low) * (1 + 0.45 * low));
 }
 
