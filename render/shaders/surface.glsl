@@ -73,20 +73,20 @@ float poleward(SurfaceInput s) {
 vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
     float lum = max(luminance(s.imagery), 0.004f);
     // Forest is dark in any imagery, and drought is yellow and bright.
-    float dry = smoothstep(0.75f, 1.3f, s.imagery.r / max(s.imagery.g, 0.004f)) * smoothstep(0.025f, 0.085f, lum);
+    float dry = smoothstep(0.9f, 1.35f, s.imagery.r / max(s.imagery.g, 0.004f)) * smoothstep(0.025f, 0.085f, lum);
     float treeline = treeline_at(abs(s.normal.z)) + 180.0f * large;
     float h = s.height + 60.0f * small;
 
     // Meadow, or steppe with its shrubs, or the brown turf above the trees; all take some of the imagery's hue.
     vec3 hue = s.imagery / lum;
     // Shrubs as far as they can be told apart, then their mean.
-    float tuft = mix(smoothstep(0.0f, 0.35f, small), 0.35f, smoothstep(0.25f, 1.5f, s.footprint));
+    float tuft = mix(smoothstep(-0.2f, 0.5f, small + 0.4f * large), 0.3f, smoothstep(0.5f, 3.0f, s.footprint));
     vec3 meadow = mix(vec3(0.072f, 0.084f, 0.036f), hue * 0.075f, 0.3f);
     vec3 steppe = mix(vec3(0.235f, 0.205f, 0.140f), hue * 0.20f, 0.3f);
-    steppe = mix(steppe, vec3(0.098f, 0.100f, 0.066f), 0.8f * tuft);
+    steppe = mix(steppe, vec3(0.085f, 0.080f, 0.054f), 0.9f * tuft);
     vec3 turf = mix(vec3(0.125f, 0.116f, 0.066f), vec3(0.105f, 0.118f, 0.052f), smoothstep(-0.4f, 0.4f, large));
     vec3 open = mix(mix(meadow, steppe, dry), turf, smoothstep(treeline - 350.0f, treeline + 50.0f, h));
-    open *= 1.0f + 0.28f * large + 0.3f * small;
+    open *= 1.0f + 0.22f * large + 0.4f * small;
     vec3 trees = mix(vec3(0.026f, 0.038f, 0.019f), hue * 0.040f, 0.3f) * (1.0f + 0.6f * small);
     vec3 scree = mix(vec3(0.190f, 0.172f, 0.152f), hue * 0.17f, 0.25f);
     vec3 rock = mix(vec3(0.118f, 0.106f, 0.096f), hue * 0.105f, 0.25f);
@@ -94,7 +94,7 @@ vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
 
     float below = 1.0f - smoothstep(treeline - 170.0f, treeline + 60.0f, h);
     float wet = max(1.0f - dry, 0.85f * smoothstep(treeline - 1200.0f, treeline - 500.0f, h + 350.0f * large));
-    float stand = smoothstep(-0.3f, 0.1f, large * 0.7f + small * 0.7f + 0.9f * wet - 0.4f);
+    float stand = smoothstep(-0.4f, 0.2f, large * 0.7f + small * 0.7f + 0.9f * wet - 0.4f);
     vec3 cover = mix(open, trees, below * wet * stand * smoothstep(0.55f, 0.75f, steep));
     float bare = smoothstep(treeline + 40.0f, treeline + 460.0f, h + 260.0f * small + 120.0f * large);
     bare = max(bare, 1.0f - smoothstep(0.76f, 0.87f, steep + 0.06f * small));
@@ -168,10 +168,10 @@ vec3 surface_radiance(SurfaceInput s) {
         vec4 fine = detail_noise(s.view, s.footprint);
         float middle = patch_noise(s.view, 256.0f).w;
         float large = patch_noise(s.view, 2048.0f).w + 0.5f * middle;
-        float small = 0.6f * fine.w + 0.4f * middle + 0.7f * patch_noise(s.view, 8.0f).w;
-        // Bumps stand for what is finer than any elevation data: none from afar, few on the plains.
+        float small = 0.75f * fine.w + 0.4f * middle + 0.7f * patch_noise(s.view, 4.0f).w;
+        // Bumps stand for what is finer than any elevation data: none from afar, few on the plains but for stones and tufts.
         vec3 bump = vec3(fine) - dot(vec3(fine), ground) * ground;
-        float rough = (1.0f - smoothstep(15.0f, 150.0f, s.footprint)) * min(0.25f + 2.5f * (1.0f - dot(ground, s.normal)), 1.0f);
+        float rough = (1.0f - smoothstep(15.0f, 150.0f, s.footprint)) * min(1.0f - 0.7f * smoothstep(0.3f, 3.0f, s.footprint) + 2.5f * (1.0f - dot(ground, s.normal)), 1.0f);
         vec3 cover = ground_cover(s, dot(ground, s.normal), large, small);
         ground = normalize(ground - bump * (0.35f * near * rough));
         albedo = mix(albedo, cover, near);
@@ -186,7 +186,9 @@ vec3 surface_radiance(SurfaceInput s) {
     vec3 level = light.sun * max(sun_cosine, 0.0f) + light.sky;
     vec3 irradiance = light.sun * facing + light.sky * open + level * (0.2f * (1.0f - open));
     vec3 land = albedo * 0.3183099f * irradiance;
-    vec3 sea = sea_radiance(s, light, to_eye, mix(s.imagery, vec3(0.008f, 0.026f, 0.046f), 0.5f * near));
+    // Imagery paints shoals in a blue that no sea has.
+    vec3 deep = vec3(0.008f, 0.026f, 0.046f);
+    vec3 sea = sea_radiance(s, light, to_eye, mix(s.imagery * vec3(0.9f, 0.85f, 0.6f), deep, 0.25f + 0.5f * near));
     vec3 day = mix(land, sea, water);
 
     float dark = 1.0f - smoothstep(-0.14f, 0.03f, sun_cosine);
