@@ -146,7 +146,7 @@ vec3 sea_radiance(SurfaceInput s, Light light, vec3 to_eye, vec3 color) {
     float mirror = fresnel_water(sqrt(max(cos_view, 0.0f) * max(cos_view, 0.0f) + rough * rough * 4.0f));
     vec3 sky = light.sky * (0.3183099f * mix(1.0f, 1.7f, 1.0f - clamp(cos_view * 2.0f, 0.0f, 1.0f)));
     vec3 below = color * 0.3183099f * (light.sun * max(cos_sun, 0.0f) + light.sky) * (1.0f - mirror);
-    return below + sky * mirror + light.sun * glint;
+    return below + sky * mirror + light.sun * vec3(1.0f, 0.93f, 0.80f) * glint;
 }
 
 /// Radiance that leaves the surface towards the eye; the air before it is aerial()'s.
@@ -195,6 +195,7 @@ vec3 surface_radiance(SurfaceInput s) {
     // Streets between houses are hidden from low angles.
     float seen = smoothstep(0.0f, 0.35f, dot(s.normal, to_eye));
     vec3 cities = lamps(sqrt(max(s.night.r, 0.0f))) * (sky_exposure.y * dark * seen);
-    vec3 ambient = mix(albedo, vec3(0.02f, 0.03f, 0.05f), water) * vec3(0.75f, 0.9f, 1.2f) * sky_exposure.z;
+    // Moonlight, ten times the air's own glow.
+    vec3 ambient = mix(albedo, vec3(0.02f, 0.03f, 0.05f), water) * vec3(7.5f, 9.0f, 12.0f) * sky_exposure.z;
     return day + cities + ambient;
 }

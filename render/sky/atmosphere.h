@@ -53,8 +53,8 @@ namespace render {
 struct Atmosphere {
     double equatorial_radius = 6378137.0;
     double polar_radius = 6356752.314245179;
-    double depth_below = 500.0;  ///< the ground sphere lies this far below the ellipsoid
-    double thickness = 100.0e3;  ///< the air ends this far above the ground sphere
+    double depth_below = 500.0;                        ///< the ground sphere lies this far below the ellipsoid
+    double thickness = 100.0e3;                        ///< the air ends this far above the ground sphere
     glm::dvec3 rayleigh{5.88e-6, 12.06e-6, 23.05e-6};  ///< A. Bucholtz 1995, 15 C
     double rayleigh_scale_height = 8000.0;
     double mie_scattering = 3.996e-6;
@@ -125,8 +125,8 @@ struct ViewTable {
 ViewTable make_view_table(const AtmosphereTables& tables, const glm::dvec3& eye, const glm::dvec3& sun,
                           unsigned threads = 2);
 
-/// The exposure that a photographer would set: 1 in daylight and from space, rising as the light on the ground below an
-/// eye in the air falls. Depends on nothing but its arguments.
+/// The exposure that a photographer would set: 1 from 8,000 km up, half as much again in daylight near the ground, and
+/// rising as the light on the ground below an eye in the air falls. Depends on nothing but its arguments.
 float exposure_for(const AtmosphereTables& tables, const glm::dvec3& eye, const glm::dvec3& sun);
 
 /// Whether some pixel of a picture can show ground finer than the imagery: if not, the shaders may be built with

@@ -320,8 +320,12 @@ float exposure_for(const AtmosphereTables& tables, const dvec3& eye, const dvec3
         return double(tables.sky_light.at(k, 0).g) + double(tables.sun_light.at(k, 0).g) * std::max(mu, 0.0);
     };
     const double light = std::max(level(i) + (level(i + 1) - level(i)) * (x - i), 2e-4);
-    const double full = 0.8, low = 1 - smooth(std::log(60e3), std::log(2e7), std::log(std::max(r - profile.ground(), 1.0)));
-    return static_cast<float>(std::pow(std::max(full / light, 1.0), 0.45 * low) * (1 + 0.45 * low));
+    const double height = std::max(r - profile.ground(), 1.0), full = 0.8;
+    // Only an eye in the air gets used to dusk: from space day and night are in one picture. What brightens the ground
+    // alone, which is darker than clouds and ice, may go on to where the globe is seen whole.
+    const double low = 1 - smooth(30e3, 400e3, height);
+    const double near = 1 - smooth(std::log(60e3), std::log(8e6), std::log(height));
+    return static_cast<float>(std::pow(std::max(full / light, 1.0), 0.45 * low) * (1 + 0.45 * near));
 }
 
 }  // namespace render
