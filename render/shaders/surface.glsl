@@ -86,7 +86,7 @@ vec3 ground_cover(SurfaceInput s, float steep, float large, float small) {
     steppe = mix(steppe, vec3(0.085f, 0.080f, 0.054f), 0.9f * tuft);
     vec3 turf = mix(vec3(0.125f, 0.116f, 0.066f), vec3(0.105f, 0.118f, 0.052f), smoothstep(-0.4f, 0.4f, large));
     vec3 open = mix(mix(meadow, steppe, dry), turf, smoothstep(treeline - 350.0f, treeline + 50.0f, h));
-    open *= 1.0f + 0.22f * large + 0.4f * small;
+    open *= 1.0f + 0.15f * large + 0.35f * small;
     vec3 trees = mix(vec3(0.026f, 0.038f, 0.019f), hue * 0.040f, 0.3f) * (1.0f + 0.6f * small);
     vec3 scree = mix(vec3(0.190f, 0.172f, 0.152f), hue * 0.17f, 0.25f);
     vec3 rock = mix(vec3(0.118f, 0.106f, 0.096f), hue * 0.105f, 0.25f);
@@ -168,7 +168,8 @@ vec3 surface_radiance(SurfaceInput s) {
         vec4 fine = detail_noise(s.view, s.footprint);
         float middle = patch_noise(s.view, 256.0f).w;
         float large = patch_noise(s.view, 2048.0f).w + 0.5f * middle;
-        float small = 0.75f * fine.w + 0.4f * middle + 0.7f * patch_noise(s.view, 4.0f).w;
+        // Single stones and bushes are what a pixel can show near by; from afar as strong a grain would be felt, not ground.
+        float small = mix(0.75f, 0.35f, smoothstep(2.0f, 40.0f, s.footprint)) * fine.w + 0.4f * middle + 0.7f * patch_noise(s.view, 4.0f).w;
         // Bumps stand for what is finer than any elevation data: none from afar, few on the plains but for stones and tufts.
         vec3 bump = vec3(fine) - dot(vec3(fine), ground) * ground;
         float rough = (1.0f - smoothstep(15.0f, 150.0f, s.footprint)) * min(1.0f - 0.7f * smoothstep(0.3f, 3.0f, s.footprint) + 2.5f * (1.0f - dot(ground, s.normal)), 1.0f);

@@ -62,6 +62,27 @@ TEST(SkySurface, CoverFollowsHeightSlopeAndLatitude) {
     EXPECT_LT(s.luminance(tropics), 0.3f);  // no snow yet
 }
 
+TEST(SkySurface, SnowLingersOnSlopesThatFaceThePole) {
+    Shading& s = scene().shading;
+    const auto light = [&](float latitude, float slope) {
+        const auto in = ground(latitude, 4100, slope, 1);
+        return s.luminance(s.ground_cover(in, std::cos(slope), 0, 0));
+    };
+    EXPECT_GT(light(0.656f, 0.5f), 0.5f);  // Colorado, 500 m above the trees; a positive slope faces north
+    EXPECT_LT(light(0.656f, -0.5f), 0.25f);
+    EXPECT_GT(light(-0.656f, -0.5f), 0.5f);
+    EXPECT_LT(light(-0.656f, 0.5f), 0.25f);
+}
+
+TEST(SkySurface, NoiseStaysWhereItIsWhenTheEyeCrossesItsPeriod) {
+    Shading a = scene().shading, b = a;
+    a.sky_detail = glm::vec4(131072.0f - 64, 5, 7, 9784);  // one eye, written on either side of the period
+    b.sky_detail = glm::vec4(-64, 5, 7, 9784);
+    for (const float size : {4.0f, 256.0f, 2048.0f, 16384.0f})
+        for (float x = 0; x < 4 * size; x += 0.37f * size)
+            EXPECT_NEAR(a.patch_noise(vec3(x, 0, 0), size).w, b.patch_noise(vec3(x, 0, 0), size).w, 0.02f) << size;
+}
+
 TEST(SkySurface, ImageryFromAfarAndCoverNearWithoutASeam) {
     Shading& s = scene().shading;
     EXPECT_EQ(s.close_up(20000), 0);
