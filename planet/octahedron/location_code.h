@@ -83,17 +83,24 @@ class LocationCode {
     std::uint64_t bits_ = 8;
 };
 
-/// The cell of the same level across the split side. Constant time, faces included.
+/// The neighbour across a split side within one root of a topology with `root_bits`, or 0 if that side lies on the root's
+/// own border.
 ///
-/// With p the path, t = (p ^ p >> 1) & 0x5555... over the lowest 2 floor(d/2) bits finds the nearest ancestor, an even
-/// number of levels up, whose split-side halves meet inside it; if there is none the side lies on the face's own split
-/// side (d even) or on a leg (d odd).
-constexpr LocationCode neighbor(LocationCode cell) {
+/// With p the path, the lowest set bit of (p ^ p >> 1) at an even place finds the nearest ancestor, an even number of
+/// levels up, whose split-side halves meet inside it. It is inside the path iff it is below bit 2 floor(d / 2), d the
+/// bisection level, and so iff 2^(root_bits + 2) times it does not pass the code: one comparison, without d.
+constexpr std::uint64_t neighbor_within_root(std::uint64_t code, int root_bits) {
+    const std::uint64_t t = (code ^ (code >> 1)) & 0x5555555555555555u;
+    const std::uint64_t low = t & (0 - t);
+    return (low << (root_bits + 2)) - 1 < code ? code ^ ((low << 2) - 1) : 0;
+}
+
+namespace detail {
+// The path is complemented and the face changes: the other hemisphere for an even level, whose side is the face's own
+// split side; the face beside it for an odd one, whose side is a leg.
+constexpr LocationCode neighbor_on_other_face(LocationCode cell) {
     const std::uint64_t code = cell.bits();
     const int d = cell.bisection_level();
-    const std::uint64_t t = (code ^ (code >> 1)) & 0x5555555555555555u & ((std::uint64_t{1} << (d & ~1)) - 1);
-    if (t != 0) return LocationCode(code ^ (((t & (0 - t)) << 2) - 1));
-    // On the face's border: complement the path and change face.
     const std::uint64_t path_mask = (std::uint64_t{1} << d) - 1;
     if ((d & 1) == 0) return LocationCode(code ^ path_mask ^ (std::uint64_t{4} << d));
     const unsigned f = static_cast<unsigned>(code >> d) & 7u;
@@ -102,6 +109,13 @@ constexpr LocationCode neighbor(LocationCode cell) {
     const unsigned step = top != south ? 1u : 3u;
     const unsigned g = (f & 4u) | ((f + step) & 3u);
     return LocationCode(((code & path_mask) ^ path_mask) | std::uint64_t{8u | g} << d);
+}
+}  // namespace detail
+
+/// The cell of the same level across the split side. Constant time, faces included.
+constexpr LocationCode neighbor(LocationCode cell) {
+    const std::uint64_t inside = neighbor_within_root(cell.bits(), 3);
+    return inside != 0 ? LocationCode(inside) : detail::neighbor_on_other_face(cell);
 }
 
 /// The cell of the same level across any side. Constant time: a leg's neighbour is the sibling (inside the parent) or
