@@ -1,0 +1,30 @@
+#pragma once
+// The deviation of every cell of a raster, exactly: the largest vertical distance, metres, between the triangle through
+// its corners and every sample in it, sides included; not only at the split vertex.
+//
+// Large cells are scanned row by row: the sides of a cell are upright, level or diagonal, so a row of it is an exact span
+// of samples, and the plane over it an arithmetic sequence. Small cells, where a row is a few samples long and most of
+// the time would go, are the lanes of a vector: eight cells at once, eight bisections deep. There the *residuals* (sample
+// minus plane) of a cell become those of its children by one product each,
+//
+//     r_child(v) = r(v) - r(m) hat(v)          m the split vertex; hat linear, 1 at m and 0 at the child's other corners
+//
+// with the same weights in every cell of a depth, so no plane is ever set up. Heights of whole metres make everything
+// here dyadic, and the deviations exact; else they are rounded up to float after sums in double.
+
+#include <limits>
+
+#include "planet/patches/patch_raster.h"
+#include "planet/quadtree/dense_quadtree.h"
+
+namespace planet {
+
+/// Where valid and void samples mix: above any tolerance, so that such cells split down to unit cells.
+inline constexpr float mixed_with_void = std::numeric_limits<float>::infinity();
+
+/// By cell of bisection levels 0 .. lattice.bisection_levels() - 1 (unit cells have none). Cells of padding only, and
+/// wholly void ones, have 0. Padding counts only by being void or not. The same bits whatever the threads.
+/// @param threads 0: one a processor
+DenseQuadtree<float> patch_deviations(const PatchRaster& raster, unsigned threads = 0);
+
+}  // namespace planet
