@@ -50,7 +50,8 @@ struct FeatureOptions {
 /// Shapefile, GPX, KML, GML, CSV with a column of WKT or with columns of coordinates (lon, lat, ele; x, y, z; ...).
 /// Several in one and collections are taken apart, curves become chords of 4 degrees of arc (within 0.0007 of their
 /// radius), the faces of surfaces become polygons. Lines of one vertex count as points, rings without area of fewer
-/// than three vertices as lines. A file that names no CRS is taken to be in the one asked for. Longitudes are not
+/// than three vertices as lines. In KML and GPX a height of 0 is none unless it is called absolute, and so are heights that
+/// KML clamps to the ground or counts from it. A file that names no CRS is taken to be in the one asked for. Longitudes are not
 /// turned and lines are not cut at +-180.
 ///
 /// Throws Error(bad_data) if there is no such file, or it is empty, damaged, a raster, has nothing with a place, more

@@ -210,7 +210,8 @@ TEST(Features, GpxGivesHeightsAndEachVertexOnce) {
                 "<?xml version=\"1.0\"?><gpx version=\"1.1\" creator=\"a\" xmlns=\"http://www.topografix.com/GPX/1/1\">"
                 "<wpt lat=\"46\" lon=\"8\"><ele>500</ele></wpt><wpt lat=\"46\" lon=\"9\"/>"
                 "<trk><trkseg><trkpt lat=\"46\" lon=\"8\"><ele>100</ele></trkpt>"
-                "<trkpt lat=\"47\" lon=\"8\"><ele>200</ele></trkpt></trkseg></trk>"
+                "<trkpt lat=\"47\" lon=\"8\"><ele>200</ele></trkpt>"
+                "<trkpt lat=\"47\" lon=\"9\"/></trkseg></trk>"
                 "<trk><trkseg><trkpt lat=\"46\" lon=\"8\"/><trkpt lat=\"47\" lon=\"8\"/></trkseg></trk></gpx>");
     const Features f = read_features(folder / "a.gpx");
     ASSERT_EQ(f.points.size(), 2u);
@@ -218,19 +219,26 @@ TEST(Features, GpxGivesHeightsAndEachVertexOnce) {
     EXPECT_TRUE(same(f.points[1], {9, 46, nan}));
     ASSERT_EQ(f.lines.size(), 2u);
     EXPECT_TRUE(same(f.lines[0][1], {8, 47, 200}));
+    EXPECT_TRUE(same(f.lines[0][2], {9, 47, nan})) << "OGR says 0";
     EXPECT_TRUE(same(f.lines[1][1], {8, 47, nan}));
 }
 
-TEST(Features, Kml) {
+TEST(Features, KmlMeansItsHeightsOnlyWhenItSaysSo) {
     const TemporaryFolder folder;
-    write_bytes(
-        folder / "a.kml",
-        "<?xml version=\"1.0\"?><kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document>"
-        "<Placemark><Point><coordinates>8,46,700</coordinates></Point></Placemark>"
-        "<Placemark><LineString><coordinates>8,46 9,47</coordinates></LineString></Placemark></Document></kml>");
+    const auto placemark = [](const std::string& mode, const std::string& z) {
+        return "<Placemark><Point>" + (mode.empty() ? "" : "<altitudeMode>" + mode + "</altitudeMode>") +
+               "<coordinates>8,46" + z + "</coordinates></Point></Placemark>";
+    };
+    write_bytes(folder / "a.kml",
+                "<?xml version=\"1.0\"?><kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document>" + placemark("", "") +
+                    placemark("", ",0") + placemark("", ",700") + placemark("absolute", ",0") +
+                    placemark("clampToGround", ",700") + placemark("relativeToGround", ",2") +
+                    "<Placemark><LineString><coordinates>8,46 9,47</coordinates></LineString></Placemark>"
+                    "</Document></kml>");
     const Features f = read_features(folder / "a.kml");
-    ASSERT_EQ(f.points.size(), 1u);
-    EXPECT_TRUE(same(f.points[0], {8, 46, 700}));
+    const double z[] = {nan, nan, 700, 0, nan, nan};
+    ASSERT_EQ(f.points.size(), std::size(z));
+    for (std::size_t i = 0; i < std::size(z); ++i) EXPECT_TRUE(same(f.points[i], {8, 46, z[i]})) << i;
     ASSERT_EQ(f.lines.size(), 1u);
     EXPECT_TRUE(same(f.lines[0][1], {9, 47, nan}));
 }

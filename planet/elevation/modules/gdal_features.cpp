@@ -80,6 +80,18 @@ std::optional<OGRSpatialReference> target_crs(const FeatureOptions& options) {
     return flat(crs);
 }
 
+enum class Heights { as_they_are, zero_is_none, none };
+
+// KML and GPX have 0 where no height is known: KML because its altitudes count for nothing unless they are called
+// absolute, GPX within lines of which other vertices have one.
+Heights heights_of(const std::string& driver, const OGRFeature& feature) {
+    if (driver == "GPX") return Heights::zero_is_none;
+    if (driver != "LIBKML" && driver != "KML") return Heights::as_they_are;
+    const int mode = feature.GetFieldIndex("altitudeMode");
+    if (mode < 0 || !feature.IsFieldSetAndNotNull(mode)) return Heights::zero_is_none;
+    return std::string_view(feature.GetFieldAsString(mode)) == "absolute" ? Heights::as_they_are : Heights::none;
+}
+
 // From the coordinates of a layer to those asked for.
 class Placement {
   public:
@@ -105,6 +117,8 @@ class Placement {
                         "a CRS that PROJ knows");
     }
 
+    void set_heights(Heights heights) { heights_ = heights; }
+
     void apply(std::vector<glm::dvec3>& vertices) {
         for (glm::dvec3& v : vertices) {
             if (!std::isfinite(v.x) || !std::isfinite(v.y) || std::isinf(v.z))
@@ -112,7 +126,8 @@ class Placement {
             if (std::abs(v.y) > pole_)
                 throw Error(Fault::bad_data, path_, "holds the longitude and latitude " + text(v),
                             "latitudes from -90 to 90, or a file that names its CRS");
-            v.z *= metres_per_z_;
+            const bool no_height = heights_ == Heights::none || (heights_ == Heights::zero_is_none && v.z == 0);
+            v.z = no_height ? std::numeric_limits<double>::quiet_NaN() : v.z * metres_per_z_;
         }
         if (transformation_) transform(vertices);
     }
@@ -137,6 +152,7 @@ class Placement {
     }
 
     const std::string& path_;
+    Heights heights_ = Heights::as_they_are;
     double metres_per_z_ = 1;
     double pole_ = std::numeric_limits<double>::infinity();  // the largest latitude in units of the layer's CRS
     Transformation transformation_{nullptr, [](OGRCoordinateTransformation*) {}};
@@ -253,9 +269,17 @@ class FeatureCollector {
 };
 
 // The layers that repeat the vertices of others.
-bool repeats(GDALDataset& dataset, OGRLayer& layer) {
+bool repeats(const std::string& driver, OGRLayer& layer) {
     const std::string name = layer.GetName();
-    return std::string_view(dataset.GetDriverName()) == "GPX" && (name == "route_points" || name == "track_points");
+    return driver == "GPX" && (name == "route_points" || name == "track_points");
+}
+
+// A FlatGeobuf file that is cut between two features looks to OGR as if it ended there; its head says how many it has.
+bool is_cut(const std::string& driver, GDALDataset& dataset, std::int64_t features_read) {
+    if (driver != "FlatGeobuf") return false;
+    std::int64_t promised = 0;
+    for (OGRLayer* layer : dataset.GetLayers()) promised += layer->GetFeatureCount(FALSE);
+    return features_read < promised;
 }
 
 class GdalFeatureDriver : public FeatureDriver {
@@ -269,12 +293,15 @@ class GdalFeatureDriver : public FeatureDriver {
         const CPLConfigOptionSetter gpx_heights("GPX_ELE_AS_25D", "YES", false);
         const std::optional<OGRSpatialReference> target = target_crs(options);
         const Dataset dataset = open(path);
+        const std::string driver = dataset->GetDriverName();
         FeatureCollector collector(path, options.max_vertices);
         std::map<const OGRGeomFieldDefn*, Placement> placements;
         const GdalMessages messages;
+        std::int64_t features_read = 0;
         OGRLayer* layer = nullptr;
         while (const OGRFeatureUniquePtr feature{dataset->GetNextFeature(&layer, nullptr, nullptr, nullptr)}) {
-            if (repeats(*dataset, *layer)) continue;
+            ++features_read;
+            if (repeats(driver, *layer)) continue;
             for (int i = 0; i < feature->GetGeomFieldCount(); ++i) {
                 const OGRGeometry* geometry = feature->GetGeomFieldRef(i);
                 if (!geometry) continue;
@@ -282,10 +309,11 @@ class GdalFeatureDriver : public FeatureDriver {
                 auto at = placements.find(field);
                 if (at == placements.end())
                     at = placements.try_emplace(field, field->GetSpatialRef(), target, path).first;
+                at->second.set_heights(heights_of(driver, *feature));
                 collector.add(*geometry, at->second);
             }
         }
-        if (!messages.last().empty())
+        if (!messages.last().empty() || is_cut(driver, *dataset, features_read))
             throw Error(Fault::bad_data, path, "is damaged or cut short: " + messages.last(), vector_file);
         return collector.take();
     }
