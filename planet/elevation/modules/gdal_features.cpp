@@ -45,13 +45,14 @@ Dataset open(const std::string& path) {
         auto* driver = static_cast<GDALDriver*>(GDALIdentifyDriverEx(path.c_str(), kind, nullptr, nullptr));
         return driver ? std::string(driver->GetDescription()) : std::string();
     };
-    const CPLStringList options = open_options(driver_for(GDAL_OF_VECTOR), path);
+    const std::string vector = driver_for(GDAL_OF_VECTOR), raster = driver_for(GDAL_OF_RASTER);
+    const CPLStringList options = open_options(vector, path);
     Dataset dataset(static_cast<GDALDataset*>(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR, nullptr,
                                                          options.List(), nullptr)),
                     [](GDALDataset* d) { GDALClose(d); });
     if (dataset) return dataset;
-    const std::string raster = driver_for(GDAL_OF_RASTER);
-    if (!raster.empty()) throw Error(Fault::bad_data, path, "is a raster (" + raster + "), not features", vector_file);
+    if (vector.empty() && !raster.empty())
+        throw Error(Fault::bad_data, path, "is a raster (" + raster + "), not features", vector_file);
     throw Error(Fault::bad_data, path, "cannot be read: " + messages.last(), vector_file);
 }
 
@@ -98,6 +99,7 @@ class Placement {
     Placement(const OGRSpatialReference* own, const std::optional<OGRSpatialReference>& target, const std::string& path)
         : path_(path), metres_per_z_(metres_per_height(own)) {
         if (!target) return;
+        const GdalMessages messages;
         const bool named = own && !own->IsEmpty() && !own->IsLocal();
         OGRSpatialReference from = named ? flat(*own) : *target;
         if (from.IsGeocentric())
@@ -110,7 +112,6 @@ class Placement {
             if (there) from = flat(*there);
         }
         if (from.IsSame(&*target)) return;
-        const GdalMessages messages;
         transformation_ = make_transformation(from, *target);
         if (!transformation_)
             throw Error(Fault::bad_data, path, "its CRS cannot be turned into the one wanted: " + messages.last(),
