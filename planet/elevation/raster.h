@@ -50,15 +50,18 @@ struct Raster {
 
     SampleGrid grid;
     std::string crs;  ///< "EPSG:4326", or WKT
-    /// Null if the grid is in (longitude, latitude) degrees of the planet itself; else how to get there.
+    /// Null if the grid is in (longitude, latitude) degrees of the planet itself, or plain; else how to get there.
     std::shared_ptr<const CoordinateTransform> transform;
     double radius_m = 6378137;  ///< semi-major axis of the CRS's ellipsoid
+    /// The grid is no known place on a planet: crs is empty and transform null. Such a raster is a surface of its own,
+    /// not one for a SampleMap or a RasterField. Only where RasterOptions::plain allows it.
+    bool plain = false;
 
     std::string name;      ///< file name without its folder
     std::string checksum;  ///< SHA-256, 64 hex digits
     int reduction = 1;     ///< only every n-th row and column of the file was kept
 
-    bool geographic() const { return !transform; }
+    bool geographic() const { return !transform && !plain; }
     std::size_t count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
     /// A height in metres; NaN where void. Column and row within the grid.
     double at(int column, int row) const {

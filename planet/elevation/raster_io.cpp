@@ -5,6 +5,7 @@
 
 #include "planet/elevation/module.h"
 #include "planet/elevation/sha256.h"
+#include "planet/elevation/source_file.h"
 #include "planet/error.h"
 
 namespace planet {
@@ -13,24 +14,8 @@ namespace {
 const RasterDriver& driver() {
     using Factory = const RasterDriver* (*)();
     static const RasterDriver* const found =
-        reinterpret_cast<Factory>(module_symbol("octaglobe_gdal", "octaglobe_gdal_1", "reading elevation files"))();
+        reinterpret_cast<Factory>(module_symbol("octaglobe_gdal", "octaglobe_gdal_2", "reading elevation files"))();
     return *found;
-}
-
-// Names that GDAL understands and the file system does not.
-bool is_gdal_name(const std::string& path) {
-    return path.starts_with("/vsi") || path.find(':') != std::string::npos;
-}
-
-void check_file(const std::string& path) {
-    std::error_code failed;
-    const auto status = std::filesystem::status(path, failed);
-    if (!std::filesystem::exists(status)) {
-        if (is_gdal_name(path)) return;
-        throw Error(Fault::bad_data, path, "no such file", "an elevation file, e.g. a GeoTIFF");
-    }
-    if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, failed) == 0)
-        throw Error(Fault::bad_data, path, "is empty", "an elevation file, e.g. a GeoTIFF");
 }
 
 // Of the bytes of the files; of the samples where there are no files (e.g. inside an archive).
@@ -58,7 +43,7 @@ std::string checksum_of(const Raster& raster, std::vector<std::string> files) {
 }  // namespace
 
 Raster read_raster(const std::string& path, const RasterOptions& options) {
-    check_file(path);
+    check_source_file(path, "an elevation file, e.g. a GeoTIFF");
     std::vector<std::string> files;
     try {
         Raster raster = driver().read(path, options, files);

@@ -17,13 +17,17 @@ struct RasterOptions {
     /// For a file that does not name its CRS, e.g. "EPSG:32633". Without it such a file is taken for WGS84 longitude
     /// and latitude if its coordinates fit, else refused.
     std::string crs_if_missing;
+    /// Accepts a raster that is nowhere on a planet, e.g. a heightmap in a grey PNG; it says so in Raster::plain. With no
+    /// georeference its grid is x = column, y = -row of the file; with one that has no CRS, or one that is local or
+    /// unknown to PROJ, the grid is in the file's own coordinates, even if they could be longitude and latitude.
+    bool plain = false;
 };
 
 /// Reads a DEM: any format, CRS and band type that GDAL reads, one band (and an alpha band or mask), 8 to 64 bit
 /// integers or floats, scale and offset, heights in metres or in feet if the file says so. Void are the file's nodata
 /// value, masked pixels, NaN, infinities, and everything farther than 1000 km from 0 (unmarked fill values).
 ///
-/// Throws Error for whatever is not that: no such file, empty, damaged, no raster, no georeference, a picture, larger
+/// Throws Error for whatever is not that: no such file, empty, damaged, no raster, no georeference (unless `plain`), a picture, larger
 /// than max_samples, or nothing but nodata. Writes no files beside the source.
 /// @param path a file, or a name that GDAL knows ("NETCDF:relief.nc:height", "/vsizip/...").
 Raster read_raster(const std::string& path, const RasterOptions& options = {});

@@ -132,4 +132,36 @@ inline std::string tiff_bytes(int width, int height, bool geo, const std::functi
     return out;
 }
 
+/// A grey PNG of 8 or 16 bits a sample, not compressed; at most 65,535 bytes of samples.
+inline std::string png_bytes(int width, int height, int bits, const std::function<unsigned(int, int)>& value) {
+    const auto big = [](std::uint32_t v) {
+        std::string bytes;
+        for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(v >> shift & 255);
+        return bytes;
+    };
+    const auto chunk = [&](const std::string& type_and_data) {
+        std::uint32_t crc = 0xffffffff;
+        for (const char c : type_and_data) {
+            crc ^= static_cast<unsigned char>(c);
+            for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
+        }
+        return big(static_cast<std::uint32_t>(type_and_data.size() - 4)) + type_and_data + big(~crc);
+    };
+    std::string rows;
+    for (int r = 0; r < height; ++r) {
+        rows += '\0';  // no filter
+        for (int c = 0; c < width; ++c) rows += big(value(c, r)).substr(static_cast<std::size_t>(4 - bits / 8));
+    }
+    std::uint32_t a = 1, b = 0;  // Adler-32
+    for (const char c : rows) a = (a + static_cast<unsigned char>(c)) % 65521, b = (b + a) % 65521;
+    const auto n = static_cast<std::uint32_t>(rows.size());
+    const auto little = [](std::uint32_t v) {
+        return std::string{static_cast<char>(v & 255), static_cast<char>(v >> 8 & 255)};
+    };
+    const std::string header = big(static_cast<std::uint32_t>(width)) + big(static_cast<std::uint32_t>(height)) +
+                               static_cast<char>(bits) + std::string(4, '\0');
+    const std::string stored = "\x78\x01\x01" + little(n) + little(~n & 0xffff) + rows + big(b << 16 | a);
+    return "\x89PNG\r\n\x1a\n" + chunk("IHDR" + header) + chunk("IDAT" + stored) + chunk("IEND");
+}
+
 }  // namespace planet::testing

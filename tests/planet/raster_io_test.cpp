@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <set>
 
+#include "planet/elevation/image_io.h"
 #include "planet/elevation/sha256.h"
 #include "planet/error.h"
 #include "raster_files.h"
@@ -215,6 +218,153 @@ TEST(RasterIo, TooManySamplesAreRefusedOrReduced) {
     EXPECT_EQ(raster.at(1, 1), 707);  // every fifth sample itself, from the middle of its block of 5 x 5
     EXPECT_EQ(raster.grid.origin, glm::dvec2(1.25, 43.75));
     EXPECT_EQ(raster.grid.per_column.x, 2.5);
+}
+
+TEST(RasterIo, ASizeAloneIsRefusedBeforeMemoryIsTaken) {
+    const auto peak_kib = [] {
+        std::ifstream status("/proc/self/status");
+        std::string word;
+        while (status >> word)
+            if (word == "VmPeak:") break;
+        long kib = 0;
+        status >> kib;
+        return kib;
+    };
+    const TemporaryFolder folder;
+    const std::string band = "<VRTRasterBand dataType=\"Float64\" band=\"1\"/></VRTDataset>";
+    RasterOptions plain;
+    plain.plain = true;
+    const auto refused = [&](const std::string& width, const std::string& height) {
+        write_bytes(folder / "a.vrt",
+                    "<VRTDataset rasterXSize=\"" + width + "\" rasterYSize=\"" + height + "\">" + band);
+        EXPECT_ERROR(error_of(folder / "a.vrt", plain), width + "x" + height + " samples are too many");
+    };
+    refused("60000", "60000");  // also loads GDAL, which takes memory of its own
+    const long before = peak_kib();
+    refused("60000", "60000");
+    refused("2147483647", "1");
+    refused("1", "2147483647");
+    refused("2147483647", "2147483647");  // 2^62 samples still fit 64 bits
+    EXPECT_GT(before, 0);
+    EXPECT_LT(peak_kib() - before, 64 << 10);  // 60,000 x 60,000 takes 14 million KiB
+}
+
+TEST(RasterIo, TheLeastSizes) {
+    const TemporaryFolder folder;
+    const auto value = [](int c, int r) { return static_cast<std::int16_t>(10 * r + c + 1); };
+    for (const auto& [width, height] : {std::pair{1, 1}, {1, 5}, {5, 1}, {2, 2}, {1, 2}})
+        for (const char* crs : {"EPSG:4326", "EPSG:32632", ""}) {
+            const RasterFile file{width, height, crs, {10, 0.5, 0, 47, 0, -0.25}, ""};
+            write_raster<std::int16_t>(folder / "a", file, value);
+            const Raster raster = read_raster(folder / "a");
+            EXPECT_EQ(raster.width, width);
+            EXPECT_EQ(raster.height, height);
+            EXPECT_EQ(raster.count(), static_cast<std::size_t>(width * height));
+            EXPECT_EQ(raster.at(width - 1, height - 1), 10 * (height - 1) + width);
+            EXPECT_EQ(raster.grid.origin, glm::dvec2(10.25, 46.875));
+        }
+}
+
+TEST(RasterIo, DoublesThatAreNoHeightsAreVoid) {
+    const TemporaryFolder folder;
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const double odd[] = {std::numeric_limits<double>::quiet_NaN(), infinite, -infinite, 1e300};
+    write_raster<double>(folder / "a", alps, [&](int c, int r) { return r == 0 ? odd[c] : -12.5; });
+    const Raster raster = read_raster(folder / "a");
+    for (int c = 0; c < 4; ++c) {
+        EXPECT_TRUE(std::isnan(raster.at(c, 0))) << c;
+        EXPECT_EQ(raster.at(c, 2), -12.5);
+    }
+    write_raster<double>(folder / "b", alps, [&](int c, int) { return odd[c]; });
+    EXPECT_ERROR(error_of(folder / "b"), "every sample is nodata");
+    write_raster<float>(folder / "c", alps, [&](int c, int) { return c == 3 ? 4.0f : static_cast<float>(odd[c]); });
+    EXPECT_EQ(read_raster(folder / "c").at(3, 0), 4);
+    RasterFile scaled = alps;
+    scaled.band = "<Scale>nan</Scale>";
+    write_raster<float>(folder / "d", scaled, [](int, int) { return 1.0f; });
+    EXPECT_ERROR(error_of(folder / "d"), "no usable scale");
+}
+
+void expect_pixel_grid(const Raster& raster) {
+    EXPECT_TRUE(raster.plain);
+    EXPECT_FALSE(raster.geographic());
+    EXPECT_EQ(raster.crs, "");
+    EXPECT_EQ(raster.transform, nullptr);
+    EXPECT_EQ(raster.grid.crs_from_sample({3, 2}), glm::dvec2(3, -2));
+}
+
+TEST(RasterIo, GreyHeightmapsAreReadWhenAsked) {
+    const TemporaryFolder folder;
+    RasterOptions plain;
+    plain.plain = true;
+    for (const int bits : {8, 16})
+        write_bytes(folder / (std::to_string(bits) + ".png"), testing::png_bytes(4, 2, bits, [&](int c, int r) {
+                        return static_cast<unsigned>(r == 0 ? c : (1 << bits) - 4 + c);
+                    }));
+    for (const char* name : {"8.png", "16.png"}) {
+        EXPECT_ERROR(error_of(folder / name), "no georeference");
+        const Raster raster = read_raster(folder / name, plain);
+        expect_pixel_grid(raster);
+        EXPECT_EQ(raster.at(2, 0), 2);
+        EXPECT_EQ(raster.at(3, 1), name[0] == '8' ? 255 : 65535);
+        EXPECT_EQ(columns_around(raster), 0);
+    }
+    write_bytes(folder / "8.pgw", "10\n0\n0\n-10\n500000\n5000000\n");  // a world file: a place without a CRS
+    const Raster placed = read_raster(folder / "8.png", plain);
+    EXPECT_TRUE(placed.plain);
+    EXPECT_EQ(placed.grid.crs_from_sample({3, 1}), glm::dvec2(500030, 4999990));
+    const std::uint8_t colours[12] = {};
+    ImageWriter picture(folder / "rgb.png", 4, 1, 3, SampleType::uint8);
+    picture.write_rows(colours, 1);
+    picture.finish();
+    EXPECT_ERROR(error_of(folder / "rgb.png", plain), "colour picture");
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        names.insert(entry.path().filename().string());
+    EXPECT_EQ(names, (std::set<std::string>{"16.png", "8.pgw", "8.png", "rgb.png"}));
+}
+
+TEST(RasterIo, PlainIsOnlyWhatHasNoPlaceOtherwise) {
+    const TemporaryFolder folder;
+    RasterOptions plain;
+    plain.plain = true;
+    const auto value = [](int c, int r) { return static_cast<std::int16_t>(10 * r + c); };
+    const auto read = [&](const std::string& crs, const RasterOptions& options) {
+        const RasterFile file{4, 3, crs, {10, 0.5, 0, 47, 0, -0.25}, ""};
+        write_raster<std::int16_t>(folder / "a", file, value);
+        return read_raster(folder / "a", options);
+    };
+    EXPECT_FALSE(read("EPSG:32632", plain).plain);
+    EXPECT_EQ(read("EPSG:32632", plain).crs, "EPSG:32632");
+    // These could be degrees, and without the option they are.
+    EXPECT_EQ(read("", {}).crs, "EPSG:4326");
+    const std::string local = "LOCAL_CS[\"a mine\",UNIT[\"metre\",1]]";
+    const std::string odd =
+        "PROJCS[\"a\",GEOGCS[\"b\",DATUM[\"c\",SPHEROID[\"d\",6378137,298]],PRIMEM[\"Greenwich\",0],"
+        "UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Nobodys\"],UNIT[\"metre\",1]]";
+    EXPECT_THROW(read(odd, {}), Error);
+    for (const std::string& crs : {std::string(), local, odd}) {
+        const Raster raster = read(crs, plain);
+        EXPECT_TRUE(raster.plain) << crs;
+        EXPECT_EQ(raster.crs, "");
+        EXPECT_EQ(raster.transform, nullptr);
+        EXPECT_EQ(raster.radius_m, Raster().radius_m);
+        EXPECT_EQ(raster.grid.origin, glm::dvec2(10.25, 46.875));
+        RasterOptions both = plain;
+        both.crs_if_missing = "EPSG:32633";
+        EXPECT_EQ(read(crs, both).crs, crs == odd ? "" : "EPSG:32633");
+    }
+    RasterOptions reduced = plain;
+    reduced.max_samples = 6;
+    reduced.reduce = true;
+    write_bytes(folder / "bare.tif", testing::tiff_bytes(9, 6, false, value));
+    const Raster raster = read_raster(folder / "bare.tif", reduced);
+    EXPECT_EQ(raster.grid.origin, glm::dvec2(1, -1));
+    EXPECT_EQ(raster.grid.crs_from_sample({2, 1}), glm::dvec2(7, -4));
+    EXPECT_EQ(raster.at(2, 1), 47);
+    const RasterFile flat{4, 3, "EPSG:4326", {10, 0, 0, 47, 0, 0}, ""};  // a georeference without an area is none
+    write_raster<std::int16_t>(folder / "flat", flat, value);
+    expect_pixel_grid(read_raster(folder / "flat", plain));
 }
 
 }  // namespace

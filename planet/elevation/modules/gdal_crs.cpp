@@ -2,6 +2,7 @@
 
 #include <cpl_conv.h>
 
+#include <algorithm>
 #include <mutex>
 #include <vector>
 
@@ -10,13 +11,6 @@
 
 namespace planet {
 namespace {
-
-using Transformation = std::unique_ptr<OGRCoordinateTransformation, void (*)(OGRCoordinateTransformation*)>;
-
-Transformation make_transformation(const OGRSpatialReference& from, const OGRSpatialReference& to) {
-    return {OGRCreateCoordinateTransformation(&from, &to),
-            [](OGRCoordinateTransformation* t) { OGRCoordinateTransformation::DestroyCT(t); }};
-}
 
 // A PROJ transformation belongs to one thread at a time.
 class ProjTransform : public CoordinateTransform {
@@ -46,14 +40,17 @@ class ProjTransform : public CoordinateTransform {
     Transformation forward_, inverse_;
 };
 
-// Whether x and y are longitude (any turn) and latitude already, tried over the whole raster.
-bool is_identity(const Raster& raster, const CoordinateTransform& transform) {
+// 25 places all over the raster, the middle and the corners among them.
+std::vector<glm::dvec2> places_on(const Raster& raster) {
     std::vector<glm::dvec2> xy;
     for (int j = 0; j <= 4; ++j)
         for (int i = 0; i <= 4; ++i)
             xy.push_back(raster.grid.crs_from_sample({i * 0.25 * (raster.width - 1), j * 0.25 * (raster.height - 1)}));
-    std::vector<glm::dvec2> lonlat = xy;
-    transform.geodetic_from_crs(lonlat);
+    return xy;
+}
+
+// Whether x and y are longitude (any turn) and latitude already.
+bool is_identity(const std::vector<glm::dvec2>& xy, const std::vector<glm::dvec2>& lonlat) {
     for (std::size_t i = 0; i < xy.size(); ++i) {
         if (std::isnan(lonlat[i].x) || std::abs(xy[i].y - lonlat[i].y) > 1e-9) return false;
         if (std::abs(std::remainder(xy[i].x - lonlat[i].x, 360)) > 1e-9 && std::abs(xy[i].y) < 90 - 1e-9) return false;
@@ -74,6 +71,17 @@ std::string name_of_crs(const OGRSpatialReference& crs) {
 }
 
 }  // namespace
+
+Transformation make_transformation(const OGRSpatialReference& from, const OGRSpatialReference& to) {
+    return {OGRCreateCoordinateTransformation(&from, &to),
+            [](OGRCoordinateTransformation* t) { OGRCoordinateTransformation::DestroyCT(t); }};
+}
+
+double metres_per_height(const OGRSpatialReference* crs) {
+    if (!crs || !crs->IsCompound()) return 1;
+    const double metres = crs->GetTargetLinearUnits("VERT_CS");
+    return metres > 0 ? metres : 1;
+}
 
 void set_crs(Raster& raster, OGRSpatialReference& crs, const std::string& path) {
     const GdalMessages messages;
@@ -96,11 +104,19 @@ void set_crs(Raster& raster, OGRSpatialReference& crs, const std::string& path) 
     }
     Transformation forward = make_transformation(geographic, crs);
     Transformation inverse = make_transformation(crs, geographic);
-    if (!forward || !inverse)
-        throw Error(Fault::bad_data, path, "its CRS cannot be turned into latitude and longitude: " + messages.last(),
+    const auto refuse = [&](const std::string& why) {
+        throw Error(Fault::bad_data, path, "its CRS cannot be turned into latitude and longitude" + why,
                     "a CRS that PROJ knows");
+    };
+    if (!forward || !inverse) refuse(": " + messages.last());
     auto transform = std::make_shared<ProjTransform>(std::move(forward), std::move(inverse));
-    if (!(crs.IsGeographic() && is_identity(raster, *transform))) raster.transform = std::move(transform);
+    const std::vector<glm::dvec2> xy = places_on(raster);
+    std::vector<glm::dvec2> lonlat = xy;
+    transform->geodetic_from_crs(lonlat);
+    // PROJ makes transformations of projections it does not know, too; they fail everywhere.
+    if (std::all_of(lonlat.begin(), lonlat.end(), [](glm::dvec2 p) { return std::isnan(p.x); }))
+        refuse(" anywhere on the raster");
+    if (!(crs.IsGeographic() && is_identity(xy, lonlat))) raster.transform = std::move(transform);
 }
 
 }  // namespace planet

@@ -9,6 +9,14 @@
 
 namespace planet {
 
+using Transformation = std::unique_ptr<OGRCoordinateTransformation, void (*)(OGRCoordinateTransformation*)>;
+
+/// Null if PROJ knows no way.
+Transformation make_transformation(const OGRSpatialReference& from, const OGRSpatialReference& to);
+
+/// Metres in a unit of height of a CRS; 1 if it has no vertical part, or is null.
+double metres_per_height(const OGRSpatialReference* crs);
+
 /// Sets crs, radius_m and transform of a raster whose size and grid are set. The transform stays null where x and y are
 /// already longitude and latitude of WGS84 (or of the planet that the CRS is on) to 1e-9 degrees.
 /// Throws Error if PROJ knows no way.

@@ -74,15 +74,23 @@ bool fits_longitude_latitude(const Raster& r) {
     return true;
 }
 
-void read_georeference(GDALDataset& dataset, const RasterOptions& options, const std::string& path, Raster& raster) {
+// False if the file has none that is of use.
+bool read_grid(GDALDataset& dataset, Raster& raster) {
     double g[6];
-    const bool placed = dataset.GetGeoTransform(g) == CE_None;
-    const SampleGrid& grid = raster.grid;
-    if (placed) raster.grid = {{g[0] + 0.5 * (g[1] + g[2]), g[3] + 0.5 * (g[4] + g[5])}, {g[1], g[4]}, {g[2], g[5]}};
-    const glm::dvec2 last = grid.crs_from_sample({raster.width, raster.height});
-    if (!placed || !std::isfinite(last.x + last.y) || !(std::abs(grid.determinant()) > 0))
-        throw Error(Fault::bad_data, path, "has no georeference (or only control points)", one_band);
+    if (dataset.GetGeoTransform(g) != CE_None) return false;
+    raster.grid = {{g[0] + 0.5 * (g[1] + g[2]), g[3] + 0.5 * (g[4] + g[5])}, {g[1], g[4]}, {g[2], g[5]}};
+    const glm::dvec2 last = raster.grid.crs_from_sample({raster.width, raster.height});
+    return std::isfinite(last.x + last.y) && std::abs(raster.grid.determinant()) > 0;
+}
 
+void read_georeference(GDALDataset& dataset, const RasterOptions& options, const std::string& path, Raster& raster) {
+    if (!read_grid(dataset, raster)) {
+        if (!options.plain)
+            throw Error(Fault::bad_data, path, "has no georeference (or only control points)", one_band);
+        raster.grid = {{0, 0}, {1, 0}, {0, -1}};
+        raster.plain = true;
+        return;
+    }
     const OGRSpatialReference* named = dataset.GetSpatialRef();
     OGRSpatialReference crs;
     if (named && !named->IsEmpty() && !named->IsLocal()) {
@@ -90,12 +98,22 @@ void read_georeference(GDALDataset& dataset, const RasterOptions& options, const
     } else if (!options.crs_if_missing.empty()) {
         if (crs.SetFromUserInput(options.crs_if_missing.c_str()) != OGRERR_NONE)
             throw Error(Fault::bad_usage, options.crs_if_missing, "is no CRS", "e.g. EPSG:32633");
+    } else if (options.plain) {
+        raster.plain = true;
+        return;
     } else if (fits_longitude_latitude(raster)) {
         crs.SetWellKnownGeogCS("WGS84");
     } else {
         throw Error(Fault::bad_data, path, "does not name its CRS", one_band);
     }
-    set_crs(raster, crs, path);
+    try {
+        set_crs(raster, crs, path);
+    } catch (const Error&) {
+        if (!options.plain) throw;
+        raster.crs.clear();
+        raster.radius_m = Raster().radius_m;
+        raster.plain = true;
+    }
 }
 
 // Metres in a unit of the band: by the band's unit, else by the vertical part of the CRS.
@@ -106,10 +124,7 @@ double metres_per_unit(GDALDataset& dataset, GDALRasterBand& band) {
     if (unit == "km") return 1000;
     if (unit == "cm") return 0.01;
     if (!unit.empty()) return 1;
-    const OGRSpatialReference* crs = dataset.GetSpatialRef();
-    if (!crs || !crs->IsCompound()) return 1;
-    const double metres = crs->GetTargetLinearUnits("VERT_CS");
-    return metres > 0 ? metres : 1;
+    return metres_per_height(dataset.GetSpatialRef());
 }
 
 int reduction_for(int width, int height, const RasterOptions& options, const std::string& path) {
@@ -256,7 +271,7 @@ class GdalDriver : public RasterDriver {
 }  // namespace
 }  // namespace planet
 
-extern "C" __attribute__((visibility("default"))) const planet::RasterDriver* octaglobe_gdal_1() {
+extern "C" __attribute__((visibility("default"))) const planet::RasterDriver* octaglobe_gdal_2() {
     static const planet::GdalDriver driver;
     return &driver;
 }
