@@ -63,13 +63,13 @@ void write_mesh(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReferen
 
 /// Reads a mesh file of the format that the path's ending names: what write_mesh() writes, and of what others write
 ///   .ply   ascii, little- and big-endian; any scalar types; polygons, as fans; other elements are skipped
-///   .glb   any scenes of nodes with triangles, strips and fans; no required extensions, no sparse accessors, no other files
+///   .glb   any scenes of nodes with triangles, strips and fans; no extensions of geometry, sparse accessors, or other files
 ///   .obj   v and f of any kind, polygons as fans; all else is skipped
 ///   .stl   binary and ascii; corners at the same place become one vertex
 /// Triangles are as the file has them: nothing is joined, turned or left out. Levels and strips stay empty.
 /// @param reference if given, what the file says of its coordinates, as far as it does.
 /// Throws Error(bad_data) for a file that is not there, damaged, has no triangles, coordinates that are not finite, or so
-/// many instances that it has more triangles or vertices than bytes. Memory stays within some 50 times the file's size.
+/// many instances that it has more vertices than bytes. Memory stays within some 100 times the file's size.
 SurfaceMesh read_mesh(const std::string& path, MeshReference* reference = nullptr);
 
 }  // namespace planet

@@ -39,6 +39,14 @@ inline std::string_view trimmed(std::string_view text) {
     return text;
 }
 
+/// At most 40 characters of what a file holds, for a message.
+inline std::string shown_word(std::string_view word) {
+    std::string shown(word.substr(0, 40));
+    for (char& c : shown)
+        if (c < ' ' || c > '~') c = '?';
+    return shown;
+}
+
 /// The whole word as a number; a plus sign may precede it.
 template <class Number>
 std::optional<Number> number_from(std::string_view word) {
