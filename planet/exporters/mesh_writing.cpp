@@ -32,6 +32,14 @@ double float_rounding(double low, double high) {
     return 0.5 * static_cast<double>(std::nextafter(largest, 2e30f) - largest);
 }
 
+// To 24 bits, after Veltkamp: Dekker, "A floating-point technique for extending the available precision", Numerische
+// Mathematik 18 (1971), equation 5.6. A conversion to float and back would say the same, were it not that GCC 12 takes it
+// for nothing where it makes vectors of pairs (-O2).
+double nearest_float(double v) {
+    const double c = v * ((1 << 29) + 1);
+    return c - (c - v);
+}
+
 // Moves every vertex to round(v) and measures by how much.
 template <class Round>
 MeshRounding round_vertices(SurfaceMesh& mesh, const Round& round) {
@@ -86,8 +94,7 @@ MeshRounding round_to_format(SurfaceMesh& mesh, const MeshReference& reference, 
     check_triangles(mesh, format);
     if (format == MeshFormat::ply || format == MeshFormat::obj) return {};
     const Bounds bounds = bounds_of(mesh.vertices, ending(format));
-    if (format == MeshFormat::stl)
-        return round_vertices(mesh, [](double v) { return static_cast<double>(static_cast<float>(v)); });
+    if (format == MeshFormat::stl) return round_vertices(mesh, nearest_float);
     const double step = grid_step(bounds, least_step), steps = 1 / step;
     MeshRounding rounding = round_vertices(mesh, [=](double v) { return std::rint(v * steps) * step; });
     rounding.step = step;
