@@ -42,13 +42,17 @@ OutputFile::~OutputFile() {
     abandon();
 }
 
-void OutputFile::commit(std::string_view bytes) {
+void OutputFile::append(std::string_view bytes) {
     while (!bytes.empty()) {
         const auto written = ::write(descriptor_, bytes.data(), bytes.size());
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) fail(errno);
         bytes.remove_prefix(static_cast<std::size_t>(written));
     }
+}
+
+void OutputFile::commit(std::string_view bytes) {
+    append(bytes);
     const int closed = ::close(descriptor_);  // a full disk or a network file system may tell only now
     descriptor_ = -1;
     if (closed != 0) fail(errno);

@@ -1,5 +1,5 @@
 #pragma once
-// A small output file that appears whole or not at all.
+// An output file that appears whole or not at all.
 
 #include <filesystem>
 #include <string>
@@ -8,9 +8,8 @@
 namespace render {
 
 /// Opens a temporary file beside the target at once, so that an unwritable target is refused before any work is done;
-/// commit() writes the bytes and renames it over the target. A link is followed: what it points to is replaced. A
-/// target that is no regular file (a pipe, /dev/stdout) cannot be replaced and is written in place, in one go. Without
-/// commit() nothing is left behind.
+/// commit() renames it over the target. A link is followed: what it points to is replaced. A target that is no regular
+/// file (a pipe, /dev/stdout) cannot be replaced and is written in place. Without commit() nothing is left behind.
 class OutputFile {
   public:
     /// Throws planet::Error(bad_usage) naming `where` (the option) if the file cannot be written.
@@ -19,8 +18,11 @@ class OutputFile {
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();
 
-    /// Once. Throws planet::Error(bad_usage), leaving the old file untouched, if the bytes cannot all be written.
-    void commit(std::string_view bytes);
+    /// Writes bytes behind those before. Throws planet::Error(bad_usage), leaving the old file untouched, if they cannot
+    /// all be written.
+    void append(std::string_view bytes);
+    /// Once, with the last bytes. Throws as append() does.
+    void commit(std::string_view bytes = {});
 
   private:
     [[noreturn]] void fail(int error) const;

@@ -36,6 +36,18 @@ TEST(OutputFile, AppearsOnlyWhenCommitted) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"report.json"});
 }
 
+TEST(OutputFile, TakesItsBytesInPieces) {
+    const ScratchFolder folder;
+    OutputFile file("--output", folder / "x");
+    file.append("one, ");
+    file.append("");
+    file.append("two");
+    EXPECT_FALSE(fs::exists(folder / "x"));
+    file.commit();
+    EXPECT_EQ(content(folder / "x"), "one, two");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"x"});
+}
+
 TEST(OutputFile, OldContentStaysUntilTheNewIsWhole) {
     const ScratchFolder folder;
     std::ofstream(folder / "old") << "old";
