@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "planet/error.h"
+#include "render/picture/mesh_figure.h"
+
+namespace render {
+namespace {
+
+constexpr double figure_size = 1200;      ///< pixels of the shorter side at which lengths below are meant
+constexpr double margin = 44;             ///< around everything
+constexpr double legend_height = 96;      ///< below the mesh, with the distance to it
+constexpr double legend_from_size = 320;  ///< pixels of the shorter side
+
+int shorter_side(const MeshPicture& p) {
+    return std::min(p.width, p.height);
+}
+
+/// Rows right, down, towards the viewer; a unit of length stays one.
+glm::dmat3 planet_rotation(const glm::dvec3& look_from) {
+    const double length = glm::length(look_from);
+    if (!(length > 0) || !std::isfinite(length))
+        throw planet::Error(planet::Fault::bad_usage, "a picture of a mesh", "no direction to look from");
+    const glm::dvec3 near = look_from / length;
+    // Above a pole the meridian of Greenwich points down.
+    const bool polar = std::hypot(near.x, near.y) < 1e-9;
+    const glm::dvec3 right =
+        glm::normalize(glm::cross(polar ? glm::dvec3(near.z > 0 ? -1 : 1, 0, 0) : glm::dvec3(0, 0, 1), near));
+    return glm::transpose(glm::dmat3(right, -glm::cross(near, right), near));
+}
+
+struct Bounds {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+    void add(const glm::dvec3& v) {
+        low = glm::min(low, v);
+        high = glm::max(high, v);
+    }
+    glm::dvec3 size() const { return high - low; }
+    glm::dvec3 center() const { return low + 0.5 * size(); }
+};
+
+PixelBox plot_of(const MeshPicture& p, double unit) {
+    const double m = std::floor(margin * unit);
+    const double below = has_legend(p) ? std::floor(legend_height * unit) : 0;
+    return {static_cast<float>(m), static_cast<float>(m), static_cast<float>(p.width - m),
+            static_cast<float>(p.height - m - below)};
+}
+
+}  // namespace
+
+bool has_legend(const MeshPicture& picture) {
+    return shorter_side(picture) >= legend_from_size;
+}
+
+MeshView make_mesh_view(const MeshPicture& picture) {
+    MeshView view;
+    view.planet = picture.planet;
+    view.figure_unit = shorter_side(picture) / figure_size;
+    view.line_unit = std::max(std::sqrt(view.figure_unit), 0.8);
+    view.plot = plot_of(picture, view.figure_unit);
+    view.middle = {0.5 * (view.plot.left + view.plot.right), 0.5 * (view.plot.top + view.plot.bottom)};
+    glm::dmat3 turned(1);
+    if (picture.planet) {
+        turned = planet_rotation(picture.look_from);
+    } else {
+        turned[0].x = picture.metres_per_unit.x / picture.metres_per_unit.y;  // proportions only: the scale follows
+        turned[1].y = -1;
+    }
+    // Large coordinates: the first vertex is subtracted before anything is multiplied.
+    const glm::dvec3 base = picture.planet ? glm::dvec3(0) : picture.vertices[0];
+    Bounds bounds;
+    for (const glm::dvec3& v : picture.vertices) bounds.add(turned * (v - base));
+    const glm::dvec3 size = bounds.size();
+    if (!(size.x > 0 && size.y > 0))
+        throw planet::Error(planet::Fault::bad_data, "a picture of a mesh", "all vertices lie on a line");
+    const glm::dvec2 room(view.plot.right - view.plot.left, view.plot.bottom - view.plot.top);
+    double scale = std::min(room.x / size.x, room.y / size.y);
+    view.center = base + glm::inverse(turned) * glm::dvec3(glm::dvec2(bounds.center()), 0);
+    if (picture.window) {
+        const double across = picture.window->radius * (picture.planet ? 1 : turned[0].x);
+        if (!(across > 0) || !std::isfinite(across))
+            throw planet::Error(planet::Fault::bad_usage, "a picture of a mesh", "a window without extent");
+        scale = 0.5 * std::min(room.x, room.y) / across;
+        view.center = picture.window->center;
+    }
+    view.picture_from_mesh = scale * turned;
+    if (!picture.planet) view.picture_from_mesh[2].z = 0;  // heights do not show in a plan
+    view.places.reserve(picture.vertices.size());
+    for (const glm::dvec3& v : picture.vertices) view.places.push_back(view.place(v));
+    return view;
+}
+
+Footprint footprint(const MeshView& view, const std::array<std::uint32_t, 3>& triangle) {
+    const glm::vec2 a(view.places[triangle[0]]), b(view.places[triangle[1]]), c(view.places[triangle[2]]);
+    const glm::vec2 u = b - a, v = c - a, w = c - b;
+    const float turned = u.y * v.x - u.x * v.y;  // y is down: positive where counter-clockwise
+    const float longest = std::sqrt(std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(w, w)}));
+    Footprint f;
+    f.area = 0.5f * std::abs(turned);
+    f.height = longest > 0 ? 2 * f.area / longest : 0;
+    f.shown = view.planet ? turned > 0 : turned != 0;
+    return f;
+}
+
+}  // namespace render
