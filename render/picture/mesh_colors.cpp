@@ -29,7 +29,7 @@ constexpr Ramp step_ramp = {{{203, 72, 62},
                              {253, 222, 148},
                              {254, 239, 178}}};
 constexpr Color stays{240, 241, 242, 110};
-constexpr double most_apart = 1.0 / 7;  ///< of two neighbouring values, parts of the ramp
+constexpr double most_apart = 1.0 / 6;  ///< of two neighbouring values, parts of the ramp
 
 Color at(const Ramp& ramp, double t) {
     const double x = std::clamp(t, 0.0, 1.0) * static_cast<double>(ramp.size() - 1);
@@ -50,8 +50,10 @@ MeshColors::MeshColors(const MeshPicture& picture) : steps_(!picture.step.empty(
 
 Color MeshColors::of(int value) const {
     if (steps_ && value == 0) return stays;
-    const int count = std::max(last_ - first_, 1);
-    return at(steps_ ? step_ramp : level_ramp, (value - first_) * std::min(1.0 / count, most_apart));
+    const double steps = last_ - first_, apart = steps > 0 ? std::min(1 / steps, most_apart) : 0;
+    // A few levels leave out the palest; the first step is the strongest colour in any case.
+    const double start = steps_ ? 0 : std::min(most_apart, 1 - steps * apart);
+    return at(steps_ ? step_ramp : level_ramp, start + (value - first_) * apart);
 }
 
 }  // namespace render

@@ -43,7 +43,7 @@ struct MeshView {
     glm::dvec3 center{0};             ///< in the mesh's coordinates
     glm::dvec2 middle{0};             ///< where the centre lies in the picture
     PixelBox plot;                    ///< the mesh is drawn in here
-    double figure_unit = 1;           ///< of lengths in the legend: 1 in a picture of 1200 x 1200, proportional
+    double legend_unit = 1;           ///< of lengths in the legend: 1 in a picture of 1200 x 1200
     double line_unit = 1;             ///< of widths of lines: the same, growing by the square root
     std::vector<glm::vec3> places;    ///< of the vertices
     bool planet = false;
@@ -87,18 +87,22 @@ class MeshColors {
 };
 
 namespace figure_color {
-inline constexpr Color paper{255, 255, 255}, ink{22, 30, 52}, mark{196, 22, 60};
+inline constexpr Color paper{255, 255, 255}, ink{22, 30, 52};
 inline constexpr Color curve{206, 26, 58}, curve_over_steps{32, 84, 168};
 }  // namespace figure_color
 
 /// The mesh's border, its horizon if it is a planet, the curve and the marks, in the order of drawing.
-std::vector<Stroke> mesh_strokes(const MeshPicture& picture, const MeshView& view);
+struct MeshStrokes {
+    std::vector<Stroke> list;
+    bool has_curve = false;  ///< some of the curve is large enough to be seen
+};
+MeshStrokes mesh_strokes(const MeshPicture& picture, const MeshView& view);
 
 /// The legend's swatches and lines.
 struct Legend {
     std::vector<FillCorner> swatches;
     std::vector<Stroke> strokes;
 };
-Legend make_legend(const MeshPicture& picture, const MeshView& view, const MeshColors& colors);
+Legend make_legend(const MeshPicture& picture, const MeshView& view, const MeshColors& colors, bool has_curve);
 
 }  // namespace render

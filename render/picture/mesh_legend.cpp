@@ -10,7 +10,8 @@ namespace {
 
 // Lengths in figure units.
 constexpr double text_size = 13, swatch_height = 26, widest_swatch = 30, number_below = 24, gap = 14, group_gap = 46;
-constexpr double line_height = 74;  ///< of the legend's lowest line above the picture's lower margin
+constexpr double least_spacing = 5;
+constexpr double legend_middle = 52;  ///< below the plot
 
 /// Builds the legend from left to right. Run once to measure and once to draw.
 class Row {
@@ -79,7 +80,7 @@ class Row {
     Legend legend_;
 };
 
-void fill(Row& row, const MeshPicture& picture, const MeshColors& colors, double spacing) {
+void fill(Row& row, const MeshPicture& picture, const MeshColors& colors, bool has_curve, double spacing) {
     bool first = true;
     const auto next = [&] {
         if (!first) row.skip(group_gap);
@@ -93,7 +94,7 @@ void fill(Row& row, const MeshPicture& picture, const MeshColors& colors, double
     }
     if (!picture.marks.empty()) {
         next();
-        row.dot(6.5, figure_color::mark);
+        row.dot(7, figure_color::ink);
         row.skip(0.7 * gap);
         row.text("removed");
     }
@@ -101,9 +102,9 @@ void fill(Row& row, const MeshPicture& picture, const MeshColors& colors, double
         next();
         row.dot(4.2, figure_color::paper);
         row.skip(0.7 * gap);
-        row.text("goes with it");
+        row.text("removed with it");
     }
-    if (picture.curve) {
+    if (has_curve) {
         next();
         row.curve(colors.steps() ? figure_color::curve_over_steps : figure_color::curve);
         row.skip(0.7 * gap);
@@ -111,23 +112,37 @@ void fill(Row& row, const MeshPicture& picture, const MeshColors& colors, double
     }
 }
 
+/// Around a plot that the mesh goes beyond.
+void add_frame(std::vector<Stroke>& strokes, const MeshView& view) {
+    const PixelBox& p = view.plot;
+    const glm::vec3 corners[] = {
+        {p.left, p.top, 0}, {p.right, p.top, 0}, {p.right, p.bottom, 0}, {p.left, p.bottom, 0}};
+    for (std::size_t k = 0; k < 4; ++k)
+        strokes.push_back(
+            {corners[k], corners[(k + 1) % 4], static_cast<float>(1.2 * view.line_unit), figure_color::ink});
+}
+
 }  // namespace
 
-Legend make_legend(const MeshPicture& picture, const MeshView& view, const MeshColors& colors) {
+Legend make_legend(const MeshPicture& picture, const MeshView& view, const MeshColors& colors, bool has_curve) {
     if (!has_legend(picture)) return {};
-    const double unit = view.figure_unit, room = view.plot.right - view.plot.left;
+    double unit = view.legend_unit;
+    const double room = view.plot.right - view.plot.left;
     const auto width = [&](double spacing) {
         Row row(unit, view.line_unit, 0, 0);
-        fill(row, picture, colors, spacing);
+        fill(row, picture, colors, has_curve, spacing);
         return row.x();
     };
     // What does not depend on the spacing of the swatches is measured with none.
     const double count = std::max(colors.last() - colors.first() + 2, 1);
-    const double spacing = std::clamp((room - width(0)) / unit / count, 2.0, widest_swatch);
+    const double spacing = std::clamp((room - width(0)) / unit / count, least_spacing, widest_swatch);
+    unit *= std::min(1.0, room / width(spacing));
     Row row(unit, view.line_unit, 0.5 * (picture.width - width(spacing)),
-            view.plot.bottom + (96 - line_height + 30) * unit);
-    fill(row, picture, colors, spacing);
-    return row.take();
+            view.plot.bottom + legend_middle * view.legend_unit);
+    fill(row, picture, colors, has_curve, spacing);
+    Legend legend = row.take();
+    if (picture.window) add_frame(legend.strokes, view);
+    return legend;
 }
 
 }  // namespace render

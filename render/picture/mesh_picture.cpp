@@ -42,13 +42,14 @@ void check(const MeshPicture& p) {
                         "0 to " + std::to_string(p.vertices.size() - 1));
 }
 
+/// Shadows are blue, as under a clear sky; what is brighter than level ground goes towards white.
 Color shaded(Color c, float shade) {
-    const auto one = [&](std::uint8_t v) {
-        const float x = shade <= 1 ? static_cast<float>(v) * shade
-                                   : static_cast<float>(v) + (255.0f - static_cast<float>(v)) * 2 * (shade - 1);
-        return static_cast<std::uint8_t>(x + 0.5f);
-    };
-    return {one(c.red), one(c.green), one(c.blue), c.alpha};
+    const glm::vec3 whole(c.red, c.green, c.blue);
+    constexpr glm::vec3 shadow(0.36f, 0.44f, 0.62f);
+    const glm::vec3 x = shade <= 1 ? whole * glm::mix(shadow, glm::vec3(1), shade)
+                                   : glm::mix(whole, glm::vec3(255), std::min(shade - 1, 1.0f));
+    const auto one = [](float v) { return static_cast<std::uint8_t>(v + 0.5f); };
+    return {one(x.r), one(x.g), one(x.b), c.alpha};
 }
 
 bool outside(const PicturePart& part, const glm::vec2& low, const glm::vec2& high) {
@@ -162,7 +163,7 @@ class Figure {
           shades_(vertex_shades(picture, view_)),
           colors_(picture),
           strokes_(mesh_strokes(picture, view_)),
-          legend_(make_legend(picture, view_, colors_)) {
+          legend_(make_legend(picture, view_, colors_, strokes_.has_curve)) {
         float span = 1;
         for (const glm::vec3& p : view_.places) span = std::max(span, std::abs(p.z));
         depth_span_ = 2.1f * span + 16;
@@ -199,7 +200,7 @@ class Figure {
         fills_.flush();
         gl().DepthMask(GL_FALSE);
         lines_.program().set("lift", static_cast<float>(2 * view_.line_unit));
-        add_strokes(strokes_, part);
+        add_strokes(strokes_.list, part);
         gl().DepthMask(GL_TRUE);
         gl().Disable(GL_SCISSOR_TEST);
         gl().Disable(GL_DEPTH_TEST);
@@ -259,7 +260,7 @@ class Figure {
     std::vector<float> shades_;
     MeshColors colors_;
     std::array<Color, 256> palette_{};
-    std::vector<Stroke> strokes_;
+    MeshStrokes strokes_;
     Legend legend_;
     float depth_span_ = 1;
     FillPass fills_;

@@ -11,7 +11,7 @@ namespace {
 const glm::dvec3 light = glm::normalize(glm::dvec3(-0.55, -0.6, 0.75));  ///< right, down, towards the viewer
 constexpr double wanted_slope = 0.4;                                     ///< root mean square after exaggeration
 constexpr double most_exaggeration = 30;                                 ///< beyond, roundings would show as hills
-constexpr double darkest = 0.5, brightest = 1.15;
+constexpr double darkest = 0.25, brightest = 1.3;
 
 /// By vertex: the slope of the surface, rise by run, along right and down and towards the viewer. Area-weighted normals.
 std::vector<glm::dvec3> vertex_slopes(const MeshPicture& picture, const glm::dmat3& turned) {
@@ -55,7 +55,7 @@ std::vector<float> vertex_shades(const MeshPicture& picture, const MeshView& vie
     for (std::size_t v = 0; v < shades.size(); ++v) {
         const glm::dvec3 up = picture.planet ? turned * glm::normalize(picture.vertices[v]) : glm::dvec3(0, 0, 1);
         const double flat = glm::dot(up, light);
-        double shade = picture.planet ? 0.74 + 0.33 * std::max(flat, 0.0) : 1;
+        double shade = picture.planet ? 0.62 + 0.4 * std::max(flat, 0.0) : 1;
         if (picture.relief) shade += 0.9 * (glm::dot(glm::normalize(up + exaggerated * slopes[v]), light) - flat);
         shades[v] = static_cast<float>(std::clamp(shade, darkest, brightest));
     }

@@ -7,9 +7,14 @@
 namespace render {
 namespace {
 
-constexpr double border_width = 1.7, curve_width = 2.3, casing = 1.5;  ///< line units; casing on both sides
-constexpr double curve_from = 9, curve_whole = 17;  ///< height of a triangle, line units: the curve fades between
-constexpr double ring = 1.6, first_mark = 6.5, other_mark = 4.2;  ///< line units; marks: radius
+// In line units.
+constexpr float border_width = 1.7f, curve_width = 2.3f;
+constexpr float curve_from = 6, curve_whole = 13;                ///< legs of triangles: the curve appears between
+constexpr float ring = 1.6f, first_mark = 9, other_mark = 4.2f;  ///< radius of marks
+
+constexpr float casing = 2.1f;       ///< width of the white below the curve, of the curve's own
+constexpr float thinning = 0.12f;    ///< most width of the curve, of a triangle's leg
+constexpr std::size_t smoothed = 8;  ///< triangles before and after over which the curve appears
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -74,43 +79,61 @@ void add_border(std::vector<Stroke>& strokes, const MeshPicture& picture, const 
         }
         entry = exit;
     }
-    const auto width = static_cast<float>(border_width * view.line_unit);
+    const float width = border_width * static_cast<float>(view.line_unit);
     for (const Gate& side : open.take())
         strokes.push_back({view.places[side.a], view.places[side.b], width, figure_color::ink});
 }
 
-/// The curve through the middles of shared sides, bent so that it has no corners.
+/// The curve through the middles of shared sides, bent so that it has no corners. Where triangles are small it becomes
+/// thin, then faint.
 class Curve {
   public:
-    Curve(const MeshPicture& picture, const MeshView& view) : picture_(picture), view_(view) {}
+    Curve(const MeshPicture& picture, const MeshView& view)
+        : picture_(picture),
+          view_(view),
+          line_unit_(static_cast<float>(view.line_unit)),
+          color_(picture.step.empty() ? figure_color::curve : figure_color::curve_over_steps) {}
 
     /// Adds the part within a triangle, and a broader white one.
     void add(std::size_t i, std::vector<Stroke>& casings, std::vector<Stroke>& cores) const {
-        const Footprint f = footprint(view_, picture_.triangles[i]);
-        const double unit = view_.line_unit;
-        const double strength = std::clamp((f.height / unit - curve_from) / (curve_whole - curve_from), 0.0, 1.0);
-        if (!f.shown || strength <= 0) return;
+        if (!footprint(view_, picture_.triangles[i]).shown) return;
+        const float seen = strength(i);
         const glm::vec3 from = entry(i), to = exit(i), chord = to - from;
         const float length = glm::length(chord);
-        if (length == 0) return;
-        const glm::vec3 leave = length * tangent(i, has_gate(i - 1) ? i - 1 : i);
-        const glm::vec3 arrive = length * tangent(i, has_gate(i) ? i + 1 : i);
+        if (seen == 0 || length == 0) return;
+        const std::size_t before = has_gate(i - 1) ? i - 1 : i, after = has_gate(i) ? i + 1 : i;
+        const glm::vec3 leave = length * tangent(i, before), arrive = length * tangent(i, after);
         const bool straight = glm::length(leave - chord) + glm::length(arrive - chord) < 0.01f * length;
-        const int pieces = straight ? 1 : std::clamp(static_cast<int>(length / 3), 2, 24);
-        const auto width = static_cast<float>(curve_width * unit),
-                   broad = width + static_cast<float>(2 * casing * unit);
-        const Color color = picture_.step.empty() ? figure_color::curve : figure_color::curve_over_steps;
+        const int pieces = straight ? 2 : std::clamp(static_cast<int>(length / 3), 2, 24);
+        const glm::vec2 at_from(0.5f * (seen + strength(before)), 0.5f * (width(i) + width(before)));
+        const glm::vec2 at_to(0.5f * (seen + strength(after)), 0.5f * (width(i) + width(after)));
         glm::vec3 last = from;
         for (int k = 1; k <= pieces; ++k) {
             const float s = static_cast<float>(k) / static_cast<float>(pieces);
             const glm::vec3 next = hermite(from, leave, to, arrive, s);
-            casings.push_back({last, next, broad, with_alpha(figure_color::paper, strength)});
-            cores.push_back({last, next, width, with_alpha(color, strength)});
+            const glm::vec2 pen = glm::mix(at_from, at_to, s);
+            casings.push_back({last, next, pen.y * casing, with_alpha(figure_color::paper, pen.x)});
+            cores.push_back({last, next, pen.y, with_alpha(color_, pen.x)});
             last = next;
         }
     }
 
   private:
+    /// Of a triangle, line units: its leg if it is not foreshortened.
+    float size(std::size_t i) const {
+        const Footprint f = footprint(view_, picture_.triangles[i]);
+        return std::min(std::sqrt(2 * f.area), 2.2f * f.height) / line_unit_;
+    }
+    float width(std::size_t i) const { return std::min(curve_width, thinning * size(i)) * line_unit_; }
+    /// 0..1, of the mean size around a triangle, lest the curve falls to pieces where sizes vary.
+    float strength(std::size_t i) const {
+        const std::size_t first = i - std::min<std::size_t>(i, smoothed), count = picture_.triangles.size();
+        const std::size_t end = std::min(i + smoothed + 1, count);
+        float sum = 0;
+        for (std::size_t k = first; k < end; ++k) sum += std::min(size(k), curve_whole);
+        return std::clamp((sum / static_cast<float>(end - first) - curve_from) / (curve_whole - curve_from), 0.0f,
+                          1.0f);
+    }
     static glm::vec3 hermite(const glm::vec3& p, const glm::vec3& u, const glm::vec3& q, const glm::vec3& v, float s) {
         const float s2 = s * s, s3 = s2 * s;
         return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * u + (3 * s2 - 2 * s3) * q + (s3 - s2) * v;
@@ -134,59 +157,56 @@ class Curve {
         const Gate g = gate(i);
         return g ? middle(g) : centroid(i);
     }
-    glm::vec3 direction(std::size_t i) const {
-        const glm::vec3 d = exit(i) - entry(i);
-        const float length = glm::length(d);
-        return length > 0 ? d / length : glm::vec3(0);
-    }
-    /// Where two triangles meet: between their directions.
+    /// Where two triangles meet: between their directions, nearer to that of the shorter way, as a circle would go.
     glm::vec3 tangent(std::size_t i, std::size_t neighbour) const {
-        const glm::vec3 sum = direction(i) + direction(neighbour);
+        const glm::vec3 d = exit(i) - entry(i), e = exit(neighbour) - entry(neighbour);
+        const glm::vec3 sum = d * glm::dot(e, e) + e * glm::dot(d, d);
         const float length = glm::length(sum);
-        return length > 1e-3f ? sum / length : direction(i);
+        return length > 0 ? sum / length : d / glm::length(d);
     }
 
     const MeshPicture& picture_;
     const MeshView& view_;
+    float line_unit_;
+    Color color_;
 };
 
 void add_marks(std::vector<Stroke>& strokes, const MeshPicture& picture, const MeshView& view) {
     if (picture.marks.empty()) return;
+    const float unit = static_cast<float>(view.line_unit);
     // Dots keep apart where the triangles that merge are small.
-    float room = static_cast<float>(4 * first_mark * view.line_unit);
+    float room = 4 * first_mark * unit;
     for (std::size_t i = 0; i < picture.step.size(); ++i) {
         if (picture.step[i] == 0) continue;
         const Footprint f = footprint(view, picture.triangles[i]);
         if (f.shown) room = std::min(room, f.height);
     }
-    const float unit = static_cast<float>(view.line_unit);
-    const auto radius = [&](double wanted) {
-        return std::clamp(0.3f * room, 1.5f * unit, static_cast<float>(wanted) * unit);
-    };
-    const auto dot = [&](std::size_t i, float r, Color color) {
+    const auto dot = [&](std::size_t i, float radius, Color color) {
         const glm::vec3 p = view.place(picture.marks[i]);
-        strokes.push_back({p, p, 2 * r, color});
+        strokes.push_back({p, p, 2 * radius, color});
     };
-    const float edge = static_cast<float>(ring) * unit;
-    for (std::size_t i = 1; i < picture.marks.size(); ++i) dot(i, radius(other_mark), figure_color::ink);
+    const float first = std::clamp(0.4f * room, 2 * unit, first_mark * unit);
+    const float other = std::clamp(0.3f * room, 1.5f * unit, other_mark * unit);
+    for (std::size_t i = 1; i < picture.marks.size(); ++i) dot(i, other, figure_color::ink);
     for (std::size_t i = 1; i < picture.marks.size(); ++i)
-        dot(i, std::max(radius(other_mark) - edge, 0.4f), figure_color::paper);
-    dot(0, 1.3f * radius(first_mark) + 1.3f * edge, figure_color::paper);
-    dot(0, 1.3f * radius(first_mark), figure_color::mark);
+        dot(i, std::max(other - ring * unit, 0.4f), figure_color::paper);
+    dot(0, first + 1.3f * ring * unit, figure_color::paper);
+    dot(0, first, figure_color::ink);
 }
 
 }  // namespace
 
-std::vector<Stroke> mesh_strokes(const MeshPicture& picture, const MeshView& view) {
-    std::vector<Stroke> strokes;
-    add_border(strokes, picture, view);
+MeshStrokes mesh_strokes(const MeshPicture& picture, const MeshView& view) {
+    MeshStrokes strokes;
+    add_border(strokes.list, picture, view);
     if (picture.curve) {
         std::vector<Stroke> cores;
         const Curve curve(picture, view);
-        for (std::size_t i = 0; i < picture.triangles.size(); ++i) curve.add(i, strokes, cores);
-        strokes.insert(strokes.end(), cores.begin(), cores.end());
+        for (std::size_t i = 0; i < picture.triangles.size(); ++i) curve.add(i, strokes.list, cores);
+        strokes.list.insert(strokes.list.end(), cores.begin(), cores.end());
+        strokes.has_curve = !cores.empty();
     }
-    add_marks(strokes, picture, view);
+    add_marks(strokes.list, picture, view);
     return strokes;
 }
 

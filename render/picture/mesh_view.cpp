@@ -8,10 +8,11 @@
 namespace render {
 namespace {
 
-constexpr double figure_size = 1200;      ///< pixels of the shorter side at which lengths below are meant
-constexpr double margin = 44;             ///< around everything
-constexpr double legend_height = 96;      ///< below the mesh, with the distance to it
-constexpr double legend_from_size = 320;  ///< pixels of the shorter side
+constexpr double figure_size = 1200;       ///< pixels of the shorter side at which lengths below are meant
+constexpr double margin = 44;              ///< around everything
+constexpr double legend_height = 96;       ///< below the mesh, with the distance to it
+constexpr double least_legend_unit = 0.6;  ///< pixels; its letters could not be read below
+constexpr double legend_from_size = 320;   ///< pixels of the shorter side
 
 int shorter_side(const MeshPicture& p) {
     return std::min(p.width, p.height);
@@ -43,7 +44,7 @@ struct Bounds {
 
 PixelBox plot_of(const MeshPicture& p, double unit) {
     const double m = std::floor(margin * unit);
-    const double below = has_legend(p) ? std::floor(legend_height * unit) : 0;
+    const double below = has_legend(p) ? std::floor(legend_height * std::max(unit, least_legend_unit)) : 0;
     return {static_cast<float>(m), static_cast<float>(m), static_cast<float>(p.width - m),
             static_cast<float>(p.height - m - below)};
 }
@@ -57,9 +58,10 @@ bool has_legend(const MeshPicture& picture) {
 MeshView make_mesh_view(const MeshPicture& picture) {
     MeshView view;
     view.planet = picture.planet;
-    view.figure_unit = shorter_side(picture) / figure_size;
-    view.line_unit = std::max(std::sqrt(view.figure_unit), 0.8);
-    view.plot = plot_of(picture, view.figure_unit);
+    const double unit = shorter_side(picture) / figure_size;
+    view.legend_unit = std::max(unit, least_legend_unit);
+    view.line_unit = std::max(std::sqrt(unit), 0.8);
+    view.plot = plot_of(picture, unit);
     view.middle = {0.5 * (view.plot.left + view.plot.right), 0.5 * (view.plot.top + view.plot.bottom)};
     glm::dmat3 turned(1);
     if (picture.planet) {
