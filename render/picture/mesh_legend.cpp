@@ -126,18 +126,17 @@ void add_frame(std::vector<Stroke>& strokes, const MeshView& view) {
 
 Legend make_legend(const MeshPicture& picture, const MeshView& view, const MeshColors& colors, bool has_curve) {
     if (!has_legend(picture)) return {};
-    double unit = view.legend_unit;
     const double room = view.plot.right - view.plot.left;
     const auto width = [&](double spacing) {
-        Row row(unit, view.line_unit, 0, 0);
+        Row row(view.legend_unit, view.line_unit, 0, 0);
         fill(row, picture, colors, has_curve, spacing);
         return row.x();
     };
     // What does not depend on the spacing of the swatches is measured with none.
     const double count = std::max(colors.last() - colors.first() + 2, 1);
-    const double spacing = std::clamp((room - width(0)) / unit / count, least_spacing, widest_swatch);
-    unit *= std::min(1.0, room / width(spacing));
-    Row row(unit, view.line_unit, 0.5 * (picture.width - width(spacing)),
+    const double spacing = std::clamp((room - width(0)) / view.legend_unit / count, least_spacing, widest_swatch);
+    const double fit = std::min(1.0, room / width(spacing));
+    Row row(fit * view.legend_unit, fit * view.line_unit, 0.5 * (picture.width - fit * width(spacing)),
             view.plot.bottom + legend_middle * view.legend_unit);
     fill(row, picture, colors, has_curve, spacing);
     Legend legend = row.take();

@@ -28,7 +28,8 @@ void check(const MeshPicture& p) {
     if (std::min(p.width, p.height) < picture_size_min || std::max(p.width, p.height) > picture_size_max)
         throw Error(Fault::bad_usage, where, std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels",
                     least + "x" + least + " to " + most + "x" + most);
-    if (!p.planet && !(p.metres_per_unit.x > 0 && p.metres_per_unit.y > 0))
+    if (!p.planet && !(std::isnormal(p.metres_per_unit.x) && std::isnormal(p.metres_per_unit.y) &&
+                       std::min(p.metres_per_unit.x, p.metres_per_unit.y) > 0))
         throw Error(Fault::bad_usage, where, "units without length");
     if (p.triangles.empty() || p.vertices.empty()) throw Error(Fault::bad_data, where, "there are no triangles");
     const auto finite = [](const glm::dvec3& v) {
@@ -170,8 +171,13 @@ class Figure {
         for (int value = 0; value < 256; ++value) palette_[static_cast<std::size_t>(value)] = colors_.of(value);
     }
 
+    /// Beyond the roundings of triangles whose corners lie on a line.
     bool has_area() const {
-        return std::ranges::any_of(picture_.triangles, [&](const auto& t) { return footprint(view_, t).shown; });
+        const float least = 1e-6f * static_cast<float>(std::max(picture_.width, picture_.height));
+        return std::ranges::any_of(picture_.triangles, [&](const auto& t) {
+            const Footprint f = footprint(view_, t);
+            return f.shown && f.height > least;
+        });
     }
 
     void draw(const PicturePart& part, planet::Image& image) {

@@ -55,7 +55,7 @@ std::vector<float> vertex_shades(const MeshPicture& picture, const MeshView& vie
     for (std::size_t v = 0; v < shades.size(); ++v) {
         const glm::dvec3 up = picture.planet ? turned * glm::normalize(picture.vertices[v]) : glm::dvec3(0, 0, 1);
         const double flat = glm::dot(up, light);
-        double shade = picture.planet ? 0.62 + 0.4 * std::max(flat, 0.0) : 1;
+        double shade = picture.planet ? 0.5 + 0.52 * (0.5 + 0.5 * flat) : 1;
         if (picture.relief) shade += 0.9 * (glm::dot(glm::normalize(up + exaggerated * slopes[v]), light) - flat);
         shades[v] = static_cast<float>(std::clamp(shade, darkest, brightest));
     }

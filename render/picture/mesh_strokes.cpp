@@ -10,6 +10,7 @@ namespace {
 // In line units.
 constexpr float border_width = 1.7f, curve_width = 2.3f;
 constexpr float curve_from = 6, curve_whole = 13;                ///< legs of triangles: the curve appears between
+constexpr float curve_gone = 1.5f;                               ///< legs of single triangles
 constexpr float ring = 1.6f, first_mark = 9, other_mark = 4.2f;  ///< radius of marks
 
 constexpr float casing = 2.1f;       ///< width of the white below the curve, of the curve's own
@@ -96,7 +97,7 @@ class Curve {
 
     /// Adds the part within a triangle, and a broader white one.
     void add(std::size_t i, std::vector<Stroke>& casings, std::vector<Stroke>& cores) const {
-        if (!footprint(view_, picture_.triangles[i]).shown) return;
+        if (!footprint(view_, picture_.triangles[i]).shown || size(i) < curve_gone) return;
         const float seen = strength(i);
         const glm::vec3 from = entry(i), to = exit(i), chord = to - from;
         const float length = glm::length(chord);
@@ -104,7 +105,7 @@ class Curve {
         const std::size_t before = has_gate(i - 1) ? i - 1 : i, after = has_gate(i) ? i + 1 : i;
         const glm::vec3 leave = length * tangent(i, before), arrive = length * tangent(i, after);
         const bool straight = glm::length(leave - chord) + glm::length(arrive - chord) < 0.01f * length;
-        const int pieces = straight ? 2 : std::clamp(static_cast<int>(length / 3), 2, 24);
+        const int pieces = straight ? 2 : static_cast<int>(std::clamp(length / 3, 2.0f, 24.0f));
         const glm::vec2 at_from(0.5f * (seen + strength(before)), 0.5f * (width(i) + width(before)));
         const glm::vec2 at_to(0.5f * (seen + strength(after)), 0.5f * (width(i) + width(after)));
         glm::vec3 last = from;

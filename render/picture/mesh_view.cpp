@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "planet/error.h"
 #include "render/picture/mesh_figure.h"
@@ -13,6 +14,8 @@ constexpr double margin = 44;              ///< around everything
 constexpr double legend_height = 96;       ///< below the mesh, with the distance to it
 constexpr double least_legend_unit = 0.6;  ///< pixels; its letters could not be read below
 constexpr double legend_from_size = 320;   ///< pixels of the shorter side
+
+constexpr double least_window = 1e-9;  ///< of the mesh: pixels stay far within a float's range
 
 int shorter_side(const MeshPicture& p) {
     return std::min(p.width, p.height);
@@ -82,8 +85,10 @@ MeshView make_mesh_view(const MeshPicture& picture) {
     view.center = base + glm::inverse(turned) * glm::dvec3(glm::dvec2(bounds.center()), 0);
     if (picture.window) {
         const double across = picture.window->radius * (picture.planet ? 1 : turned[0].x);
-        if (!(across > 0) || !std::isfinite(across))
-            throw planet::Error(planet::Fault::bad_usage, "a picture of a mesh", "a window without extent");
+        if (!(across > least_window * std::max(size.x, size.y)) || !std::isfinite(across))
+            throw planet::Error(planet::Fault::bad_usage, "a picture of a mesh",
+                                "a window of radius " + std::to_string(picture.window->radius),
+                                "more than 1e-9 of the mesh");
         scale = 0.5 * std::min(room.x, room.y) / across;
         view.center = picture.window->center;
     }
