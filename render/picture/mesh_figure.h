@@ -2,6 +2,8 @@
 // What a picture of a mesh is made of, in picture coordinates: pixels from the top left, x right, y down, and z pixels
 // towards the viewer.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -44,7 +46,7 @@ struct MeshView {
     glm::dvec2 middle{0};             ///< where the centre lies in the picture
     PixelBox plot;                    ///< the mesh is drawn in here
     double legend_unit = 1;           ///< of lengths in the legend: 1 in a picture of 1200 x 1200
-    double line_unit = 1;             ///< of widths of lines: the same, growing by the square root
+    double line_unit = 1;             ///< of widths of lines: the same, growing by the cube root
     std::vector<glm::vec3> places;    ///< of the vertices
     bool planet = false;
 
@@ -65,7 +67,15 @@ struct Footprint {
     float height = 0;    ///< over its longest side, pixels
     bool shown = false;  ///< it faces the viewer and has some area
 };
-Footprint footprint(const MeshView& view, const std::array<std::uint32_t, 3>& triangle);
+inline Footprint footprint(const MeshView& view, const std::array<std::uint32_t, 3>& triangle) {
+    const glm::vec2 a(view.places[triangle[0]]), b(view.places[triangle[1]]), c(view.places[triangle[2]]);
+    const glm::vec2 u = b - a, v = c - a, w = c - b;
+    const float turned = u.y * v.x - u.x * v.y;  // y is down: positive where counter-clockwise
+    const float longest = std::sqrt(std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(w, w)}));
+    return {.area = 0.5f * std::abs(turned),
+            .height = longest > 0 ? std::abs(turned) / longest : 0,
+            .shown = view.planet ? turned > 0 : turned != 0};
+}
 
 /// Brightness by vertex, 1 for level ground in a plan; empty if all is 1.
 std::vector<float> vertex_shades(const MeshPicture& picture, const MeshView& view);

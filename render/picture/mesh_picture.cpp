@@ -200,7 +200,7 @@ class Figure {
     void draw_mesh(const PicturePart& part) {
         if (picture_.window) limit_to_plot(part);
         if (picture_.planet) gl().Enable(GL_DEPTH_TEST);
-        fills_.program().set("line_unit", static_cast<float>(view_.line_unit));
+        fills_.program().set("widest", static_cast<float>(1.15 * view_.line_unit));
         fills_.program().set("ink", rgb(figure_color::ink));
         for (std::size_t i = 0; i < picture_.triangles.size(); ++i) add_triangle(i, part);
         fills_.flush();

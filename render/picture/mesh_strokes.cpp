@@ -1,21 +1,21 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include "render/picture/mesh_figure.h"
 
 namespace render {
 namespace {
 
-// In line units.
-constexpr float border_width = 1.7f, curve_width = 2.3f;
-constexpr float curve_from = 6, curve_whole = 13;                ///< legs of triangles: the curve appears between
-constexpr float curve_gone = 1.5f;                               ///< legs of single triangles
-constexpr float ring = 1.6f, first_mark = 9, other_mark = 4.2f;  ///< radius of marks
+constexpr float border_width = 1.7f, curve_width = 2.3f;         ///< line units
+constexpr float ring = 1.6f, first_mark = 9, other_mark = 4.2f;  ///< line units; marks: radius
 
-constexpr float casing = 2.1f;       ///< width of the white below the curve, of the curve's own
-constexpr float thinning = 0.12f;    ///< most width of the curve, of a triangle's leg
-constexpr std::size_t smoothed = 8;  ///< triangles before and after over which the curve appears
+constexpr float curve_from = 6, curve_whole = 13;  ///< pixels, legs of triangles: the curve appears between
+constexpr float curve_gone = 1.5f;                 ///< pixels, legs of single triangles
+constexpr float casing = 2.1f;                     ///< width of the white below the curve, of the curve's own
+constexpr float thinning = 0.12f;                  ///< most width of the curve, of a triangle's leg
+constexpr std::size_t smoothed = 8;                ///< triangles before and after over which the curve appears
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -61,16 +61,16 @@ class OpenSides {
 void add_border(std::vector<Stroke>& strokes, const MeshPicture& picture, const MeshView& view) {
     OpenSides open;
     Gate entry;
+    bool shown = footprint(view, picture.triangles[0]).shown;
     for (std::size_t i = 0; i < picture.triangles.size(); ++i) {
         const Triangle& t = picture.triangles[i];
-        if (!footprint(view, t).shown) {
+        const bool next_shown = i + 1 < picture.triangles.size() && footprint(view, picture.triangles[i + 1]).shown;
+        if (!std::exchange(shown, next_shown)) {
             entry = {};
             continue;
         }
         // A side that the next triangle shares needs no list.
-        Gate exit;
-        if (i + 1 < picture.triangles.size() && footprint(view, picture.triangles[i + 1]).shown)
-            exit = gate_between(t, picture.triangles[i + 1]);
+        const Gate exit = next_shown ? gate_between(t, picture.triangles[i + 1]) : Gate{};
         const auto is = [](const Gate& g, std::uint32_t a, std::uint32_t b) {
             return g && ((g.a == a && g.b == b) || (g.a == b && g.b == a));
         };
@@ -120,12 +120,12 @@ class Curve {
     }
 
   private:
-    /// Of a triangle, line units: its leg if it is not foreshortened.
+    /// Of a triangle, pixels: its leg if it is not foreshortened.
     float size(std::size_t i) const {
         const Footprint f = footprint(view_, picture_.triangles[i]);
-        return std::min(std::sqrt(2 * f.area), 2.2f * f.height) / line_unit_;
+        return std::min(std::sqrt(2 * f.area), 2.2f * f.height);
     }
-    float width(std::size_t i) const { return std::min(curve_width, thinning * size(i)) * line_unit_; }
+    float width(std::size_t i) const { return std::min(curve_width * line_unit_, thinning * size(i)); }
     /// 0..1, of the mean size around a triangle, lest the curve falls to pieces where sizes vary.
     float strength(std::size_t i) const {
         const std::size_t first = i - std::min<std::size_t>(i, smoothed), count = picture_.triangles.size();

@@ -63,7 +63,7 @@ MeshView make_mesh_view(const MeshPicture& picture) {
     view.planet = picture.planet;
     const double unit = shorter_side(picture) / figure_size;
     view.legend_unit = std::max(unit, least_legend_unit);
-    view.line_unit = std::max(std::sqrt(unit), 0.8);
+    view.line_unit = std::max(std::cbrt(unit), 0.8);
     view.plot = plot_of(picture, unit);
     view.middle = {0.5 * (view.plot.left + view.plot.right), 0.5 * (view.plot.top + view.plot.bottom)};
     glm::dmat3 turned(1);
@@ -97,18 +97,6 @@ MeshView make_mesh_view(const MeshPicture& picture) {
     view.places.reserve(picture.vertices.size());
     for (const glm::dvec3& v : picture.vertices) view.places.push_back(view.place(v));
     return view;
-}
-
-Footprint footprint(const MeshView& view, const std::array<std::uint32_t, 3>& triangle) {
-    const glm::vec2 a(view.places[triangle[0]]), b(view.places[triangle[1]]), c(view.places[triangle[2]]);
-    const glm::vec2 u = b - a, v = c - a, w = c - b;
-    const float turned = u.y * v.x - u.x * v.y;  // y is down: positive where counter-clockwise
-    const float longest = std::sqrt(std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(w, w)}));
-    Footprint f;
-    f.area = 0.5f * std::abs(turned);
-    f.height = longest > 0 ? 2 * f.area / longest : 0;
-    f.shown = view.planet ? turned > 0 : turned != 0;
-    return f;
 }
 
 }  // namespace render
