@@ -101,6 +101,9 @@ inline constexpr Color paper{255, 255, 255}, ink{22, 30, 52};
 inline constexpr Color curve{206, 26, 58}, curve_over_steps{32, 84, 168};
 }  // namespace figure_color
 
+/// In line units (MeshView).
+inline constexpr float curve_width = 2.3f, ring_width = 1.6f, other_mark = 4.2f;
+
 /// The mesh's border, its horizon if it is a planet, the curve and the marks, in the order of drawing.
 struct MeshStrokes {
     std::vector<Stroke> list;
@@ -108,7 +111,7 @@ struct MeshStrokes {
 };
 MeshStrokes mesh_strokes(const MeshPicture& picture, const MeshView& view);
 
-/// The legend's swatches and lines.
+/// The legend's swatches and lines, and the frame of a window.
 struct Legend {
     std::vector<FillCorner> swatches;
     std::vector<Stroke> strokes;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "render/picture/mesh_figure.h"
@@ -10,7 +11,7 @@ namespace {
 
 // Lengths in figure units.
 constexpr double text_size = 13, swatch_height = 26, widest_swatch = 30, number_below = 24, gap = 14, group_gap = 46;
-constexpr double least_spacing = 5;
+constexpr double least_spacing = 5, legend_mark = 7;
 constexpr double legend_middle = 52;  ///< below the plot
 
 /// Builds the legend from left to right. Run once to measure and once to draw.
@@ -29,7 +30,7 @@ class Row {
     /// A strip of triangles, one for each value, numbered below.
     void strip(const MeshColors& colors, double spacing) {
         const double s = spacing * unit_, h = 0.5 * std::min(swatch_height * unit_, s);
-        const int every = std::max(1, static_cast<int>(std::ceil(widest_number(colors.last()) / s)));
+        const int every = static_cast<int>(std::ceil(widest_number(colors.last()) / std::max(s, unit_)));
         for (int value = colors.first(); value <= colors.last(); ++value) {
             const bool up = (value - colors.first()) % 2 == 0;
             const double base = up ? middle_ + h : middle_ - h, tip = up ? middle_ - h : middle_ + h;
@@ -44,9 +45,9 @@ class Row {
         const double width = 34 * unit_;
         for (int i = 0; i < 24; ++i) {
             const auto at = [&](int k) {
-                return glm::vec3(x_ + width * k / 24, middle_ + 5 * unit_ * std::cos(k * 2 * 3.14159265 / 12), 0);
+                return glm::vec3(x_ + width * k / 24, middle_ + 5 * unit_ * std::cos(k * std::numbers::pi / 6), 0);
             };
-            line(at(i), at(i + 1), 2.3 * line_unit_, color);
+            line(at(i), at(i + 1), curve_width * line_unit_, color);
         }
         x_ += width;
     }
@@ -54,7 +55,7 @@ class Row {
         const double r = radius * line_unit_;
         const glm::vec3 p(x_ + r, middle_, 0);
         line(p, p, 2 * r, fill == figure_color::paper ? figure_color::ink : fill);
-        if (fill == figure_color::paper) line(p, p, 2 * (r - 1.6 * line_unit_), fill);
+        if (fill == figure_color::paper) line(p, p, 2 * (r - ring_width * line_unit_), fill);
         x_ += 2 * r;
     }
 
@@ -94,13 +95,13 @@ void fill(Row& row, const MeshPicture& picture, const MeshColors& colors, bool h
     }
     if (!picture.marks.empty()) {
         next();
-        row.dot(7, figure_color::ink);
+        row.dot(legend_mark, figure_color::ink);
         row.skip(0.7 * gap);
         row.text("removed");
     }
     if (picture.marks.size() > 1) {
         next();
-        row.dot(4.2, figure_color::paper);
+        row.dot(other_mark, figure_color::paper);
         row.skip(0.7 * gap);
         row.text("removed with it");
     }
@@ -125,7 +126,9 @@ void add_frame(std::vector<Stroke>& strokes, const MeshView& view) {
 }  // namespace
 
 Legend make_legend(const MeshPicture& picture, const MeshView& view, const MeshColors& colors, bool has_curve) {
-    if (!has_legend(picture)) return {};
+    Legend framed;
+    if (picture.window) add_frame(framed.strokes, view);
+    if (!has_legend(picture)) return framed;
     const double room = view.plot.right - view.plot.left;
     const auto width = [&](double spacing) {
         Row row(view.legend_unit, view.line_unit, 0, 0);
@@ -140,7 +143,7 @@ Legend make_legend(const MeshPicture& picture, const MeshView& view, const MeshC
             view.plot.bottom + legend_middle * view.legend_unit);
     fill(row, picture, colors, has_curve, spacing);
     Legend legend = row.take();
-    if (picture.window) add_frame(legend.strokes, view);
+    legend.strokes.insert(legend.strokes.end(), framed.strokes.begin(), framed.strokes.end());
     return legend;
 }
 

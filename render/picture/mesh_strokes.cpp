@@ -8,8 +8,7 @@
 namespace render {
 namespace {
 
-constexpr float border_width = 1.7f, curve_width = 2.3f;         ///< line units
-constexpr float ring = 1.6f, first_mark = 9, other_mark = 4.2f;  ///< line units; marks: radius
+constexpr float border_width = 1.7f, first_mark = 9;  ///< line units; marks: radius
 
 constexpr float curve_from = 6, curve_whole = 13;  ///< pixels, legs of triangles: the curve appears between
 constexpr float curve_gone = 1.5f;                 ///< pixels, legs of single triangles
@@ -190,8 +189,8 @@ void add_marks(std::vector<Stroke>& strokes, const MeshPicture& picture, const M
     const float other = std::clamp(0.3f * room, 1.5f * unit, other_mark * unit);
     for (std::size_t i = 1; i < picture.marks.size(); ++i) dot(i, other, figure_color::ink);
     for (std::size_t i = 1; i < picture.marks.size(); ++i)
-        dot(i, std::max(other - ring * unit, 0.4f), figure_color::paper);
-    dot(0, first + 1.3f * ring * unit, figure_color::paper);
+        dot(i, std::max(other - ring_width * unit, 0.4f), figure_color::paper);
+    dot(0, first + 1.3f * ring_width * unit, figure_color::paper);
     dot(0, first, figure_color::ink);
 }
 

@@ -1,7 +1,6 @@
 #version 450 core
 // Colour and sides of triangles. A side is where a barycentric coordinate is 0, and its derivatives give the distance to
-// it in pixels: lines have their width however a triangle lies, and
-// both triangles at a side draw one half each.
+// it in pixels: lines have their width however a triangle lies, and both triangles at a side draw one half each.
 
 uniform float widest;  ///< line, pixels
 uniform vec3 ink;

@@ -345,6 +345,9 @@ TEST_F(MeshPictures, ShowAWindow) {
     EXPECT_EQ(pixel(image, picture, {42, 41, 0}), merged);
     EXPECT_EQ(pixel(image, picture, {39, 48.7, 0}), stays);
     EXPECT_EQ(pixel(image, static_cast<int>(view.plot.left) - 5, 150), figure_color::paper);
+    picture.width = picture.height = 100;  // framed without a legend too
+    const MeshView small = make_mesh_view(picture);
+    EXPECT_LT(luminance(pixel(draw_mesh_picture(picture), static_cast<int>(small.plot.left), 40)), 0.5);
 }
 
 TEST_F(MeshPictures, ShadeSlopes) {
