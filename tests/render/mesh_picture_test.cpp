@@ -393,6 +393,31 @@ TEST_F(MeshPictures, HaveALegendThatFits) {
     EXPECT_FALSE(has_legend(mesh.picture(200)));
 }
 
+TEST(MeshStrokes, AreTheBorderOfAPlanAndTheHorizonOfAPlanet) {
+    const Mesh square = Bisection::adaptive();
+    MeshPicture picture = square.picture(256);
+    picture.curve = false;
+    double length = 0;
+    for (const Stroke& s : mesh_strokes(picture, make_mesh_view(picture)).list) length += glm::distance(s.a, s.b);
+    MeshView view = make_mesh_view(picture);
+    EXPECT_NEAR(length, 4 * glm::distance(view.place({0, 0, 0}), view.place({64, 0, 0})), 0.01);
+
+    const Mesh globe = planet_mesh(11);
+    picture = globe.picture(256);
+    picture.planet = true;
+    picture.curve = false;
+    picture.look_from = {0.2, 0.5, 0.3};
+    view = make_mesh_view(picture);
+    const double radius = 0.5 * (view.plot.right - view.plot.left);
+    length = 0;
+    for (const Stroke& s : mesh_strokes(picture, view).list) {
+        EXPECT_NEAR(glm::distance(glm::dvec2(s.a), view.middle), radius, 0.01 * radius);
+        length += glm::distance(glm::vec2(s.a), glm::vec2(s.b));
+    }
+    EXPECT_GT(length, 2 * 3.14 * radius);  // it goes around; some zigzags are seen from the side
+    EXPECT_LT(length, 4 * 3.14 * radius);
+}
+
 std::string message(const MeshPicture& picture) {
     try {
         draw_mesh_picture(picture);
