@@ -1,0 +1,36 @@
+#pragma once
+// What a written mesh of a raster has achieved: its deviation at every sample.
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "planet/patches/patch_mesh.h"
+#include "planet/patches/raster_frame.h"
+
+namespace planet {
+
+struct AchievedDeviation {
+    double max = 0, rms = 0;         ///< metres
+    std::size_t samples = 0;         ///< valid ones in a triangle, each counted once
+    std::size_t uncovered = 0;       ///< valid ones in no triangle
+    std::vector<float> by_triangle;  ///< largest in each, metres, rounded up
+};
+
+/// Samples at their places in a frame that is not affine (RasterFrame): 36 bytes each.
+struct PlacedSamples {
+    std::vector<glm::dvec3> position;
+    std::vector<glm::vec3> up;
+};
+PlacedSamples place_samples(const PatchRaster& raster, const RasterFrame& frame);
+
+/// Places the vertices of a mesh.
+std::vector<glm::dvec3> place_vertices(const PatchMesh& mesh, const RasterFrame& frame);
+
+/// The distance along the vertical of each sample, from the plane of each triangle that holds it in the lattice, as the
+/// vertices were written. Each sample counts once for the rms: in the first triangle that holds it.
+/// @param written by vertex, in the frame, rounded as its format rounds @param samples of a frame that is not affine
+AchievedDeviation measure(const PatchMesh& mesh, std::span<const glm::dvec3> written, const PatchRaster& raster,
+                          const RasterFrame& frame, const PlacedSamples* samples);
+
+}  // namespace planet

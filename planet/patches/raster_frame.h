@@ -1,0 +1,54 @@
+#pragma once
+// From a raster's samples to the frame in which a mesh of it is written.
+
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "planet/elevation/elevation_field.h"
+#include "planet/elevation/raster.h"
+#include "planet/geodesy/geoid.h"
+#include "planet/geodesy/local_frame.h"
+#include "planet/mesh/surface_mesh.h"
+
+namespace planet {
+
+class RasterFrame {
+  public:
+    /// @param datum of the raster's heights; source and utm keep them as they are, enu and ecef need heights above the
+    ///        ellipsoid @param geoid for datum egm96 with enu and ecef; else may be null
+    /// A raster that is `plain` has its own coordinates in enu too, and no utm or ecef: Error(bad_usage).
+    RasterFrame(std::shared_ptr<const Raster> raster, MeshFrame frame, VerticalDatum datum,
+                std::shared_ptr<const Geoid> geoid);
+
+    const MeshReference& reference() const { return reference_; }
+    /// Whether x and y are affine in column and row, and up is z: deviations are those of the lattice.
+    bool affine() const { return affine_; }
+    /// Whether counter-clockwise in the lattice (column right, row up) is clockwise seen from above.
+    bool mirrored() const { return raster_->grid.determinant() < 0; }
+    /// Of x and y where they are affine.
+    const SampleGrid& grid() const { return raster_->grid; }
+    /// Metres in a unit of x and of y, near the middle of the raster.
+    glm::dvec2 metres_per_unit() const;
+
+    /// Places samples or points between them. All spans of one length. @param at (column, row) @param height of the
+    /// source, metres @param up empty, or the vertical there
+    void place(std::span<const glm::dvec2> at, std::span<const double> height, std::span<glm::dvec3> position,
+               std::span<glm::vec3> up) const;
+
+  private:
+    void set_local_frame();
+    void geodetic(std::span<const glm::dvec2> at, std::span<glm::dvec2> longitude_latitude) const;
+
+    std::shared_ptr<const Raster> raster_;
+    VerticalDatum datum_;
+    std::shared_ptr<const Geoid> geoid_;
+    MeshReference reference_;
+    bool affine_;
+    LocalFrame local_{wgs84, Geodetic{}};
+    int zone_ = 0;
+    bool north_ = true;
+};
+
+}  // namespace planet
