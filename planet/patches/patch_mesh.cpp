@@ -245,6 +245,16 @@ void append_strips(const std::vector<Triangle>& triangles, std::vector<std::uint
     }
 }
 
+void turn_strips(std::vector<std::uint32_t>& strip) {
+    std::vector<std::uint32_t> turned;
+    turned.reserve(strip.size() + strip.size() / 64 + 1);
+    for (std::size_t i = 0; i < strip.size(); ++i) {
+        if (i == 0 || strip[i - 1] == strip_restart) turned.push_back(strip[i]);
+        turned.push_back(strip[i]);
+    }
+    strip = std::move(turned);
+}
+
 PatchMesh extract(const PatchTriangulation& mesh, const PatchRaster& raster) {
     PatchMesh all = LeafWalk(mesh, raster).run();
     const PatchLattice& lattice = raster.lattice();

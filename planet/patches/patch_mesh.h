@@ -24,4 +24,7 @@ PatchMesh extract(const PatchTriangulation& mesh, const PatchRaster& raster);
 /// Appends generalized strips over triangles that mostly share a side with the one before; restarts where not.
 void append_strips(const std::vector<std::array<std::uint32_t, 3>>& triangles, std::vector<std::uint32_t>& strip);
 
+/// Turns strips over, so that they draw every triangle wound the other way: each begins with its first vertex twice.
+void turn_strips(std::vector<std::uint32_t>& strip);
+
 }  // namespace planet

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#define OCTAGLOBE_COMMANDS(command) command(render) command(query) command(check) command(info)
+#define OCTAGLOBE_COMMANDS(command) command(render) command(mesh) command(query) command(check) command(info)
 
 namespace render {
 

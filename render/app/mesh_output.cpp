@@ -1,0 +1,72 @@
+#include "render/app/mesh_output.h"
+
+#include <algorithm>
+
+#include "planet/elevation/image_io.h"
+#include "planet/error.h"
+#include "render/gl/context.h"
+
+namespace render {
+
+using planet::MeshFormat;
+using planet::MeshFrame;
+
+MeshOutput::MeshOutput(const MeshOptions& options) : options_(options) {
+    if (!options.output) return;
+    format_ = planet::mesh_format(options.output->native());
+    file_ = std::make_unique<OutputFile>("--output", *options.output);
+}
+
+MeshFrame MeshOutput::frame(bool planet) const {
+    if (options_.frame) return *options_.frame;
+    if (planet) return MeshFrame::ecef;
+    return format_ == MeshFormat::glb || format_ == MeshFormat::stl ? MeshFrame::enu : MeshFrame::source;
+}
+
+void MeshOutput::write(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference,
+                       const planet::MeshRounding& rounding, Report& report) {
+    report.set("rounding_xy", rounding.xy);
+    report.set("rounding_z_m", rounding.z);
+    if (!file_) return;
+    const auto step = report.step("write");
+    std::size_t bytes = 0;
+    planet::write_mesh(
+        [&](std::string_view block) {
+            bytes += block.size();
+            file_->append(block);
+        },
+        mesh, reference, format_, rounding);
+    file_->commit();
+    report.set("output", options_.output->string());
+    report.set("output_bytes", bytes);
+}
+
+void MeshOutput::draw(MeshPicture picture, Report& report) {
+    if (!options_.picture) return;
+    const auto step = report.step("picture");
+    picture.width = options_.picture_size.width;
+    picture.height = options_.picture_size.height;
+    const Context context = Context::create();
+    planet::write_image(options_.picture->string(), draw_mesh_picture(picture));
+    report.set("picture", options_.picture->string());
+}
+
+void report_mesh(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference, Report& report) {
+    constexpr std::string_view frames[] = {"source", "utm", "enu", "ecef"};
+    report.set("triangles", mesh.triangles.size());
+    report.set("vertices", mesh.vertices.size());
+    report.set("strip_indices", mesh.strip.size());
+    report.set("strips",
+               mesh.strip.empty() ? 0 : 1 + std::count(mesh.strip.begin(), mesh.strip.end(), planet::strip_restart));
+    report.set("frame", frames[static_cast<std::size_t>(reference.frame)]);
+    report.set("crs", reference.crs);
+    report.set("vertical_datum", reference.vertical_datum);
+}
+
+std::string grouped(std::size_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, " ");
+    return text;
+}
+
+}  // namespace render

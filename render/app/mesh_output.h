@@ -1,0 +1,42 @@
+#pragma once
+// The files of `octaglobe mesh`: the mesh and its picture, both whole or not at all.
+
+#include <memory>
+#include <string>
+
+#include "planet/exporters/mesh_file.h"
+#include "render/app/mesh_options.h"
+#include "render/picture/mesh_picture.h"
+
+namespace render {
+
+/// Opened before any work is done, so that what cannot be written is refused at once.
+class MeshOutput {
+  public:
+    /// Throws planet::Error(bad_usage) for an ending that is no format, or a place that cannot be written.
+    explicit MeshOutput(const MeshOptions& options);
+
+    bool writes_mesh() const { return options_.output.has_value(); }
+    /// .ply where none is written: nothing is rounded.
+    planet::MeshFormat format() const { return format_; }
+    /// What was asked for, or what suits the format. @param planet an ecef mesh by default
+    planet::MeshFrame frame(bool planet) const;
+
+    void write(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference,
+               const planet::MeshRounding& rounding, Report& report);
+    /// If one was asked for. The picture's size is set here.
+    void draw(MeshPicture picture, Report& report);
+
+  private:
+    const MeshOptions& options_;
+    planet::MeshFormat format_ = planet::MeshFormat::ply;
+    std::unique_ptr<OutputFile> file_;
+};
+
+/// triangles, vertices, strip_indices, frame, crs, vertical_datum.
+void report_mesh(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference, Report& report);
+
+/// "12 345"
+std::string grouped(std::size_t number);
+
+}  // namespace render
