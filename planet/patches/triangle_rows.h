@@ -37,10 +37,11 @@ class TriangleRows {
     int top() const { return top_; }
 
     /// @param y from bottom() to top()
-    RowSpan at(int y) const {
-        const int a = long_.at(y), b = y <= bend_ ? below_.at(y) : above_.at(y);
-        return {std::min(a, b), std::max(a, b)};
-    }
+    RowSpan at(int y) const { return span(y, y <= bend_ ? below_ : above_); }
+    /// The same seen from a little above the row, or below it: another span only where a side of the triangle is level.
+    /// Empty at the top, or the bottom.
+    RowSpan just_above(int y) const { return y == top_ ? RowSpan{0, -1} : span(y, y < bend_ ? below_ : above_); }
+    RowSpan just_below(int y) const { return y == bottom_ ? RowSpan{0, -1} : span(y, y <= bend_ ? below_ : above_); }
 
   private:
     struct Side {
@@ -48,6 +49,10 @@ class TriangleRows {
         int slope = 0;  ///< of x by y: -1, 0, 1
         int at(int y) const { return start.x + slope * (y - start.y); }
     };
+    RowSpan span(int y, const Side& other) const {
+        const int a = long_.at(y), b = other.at(y);
+        return {std::min(a, b), std::max(a, b)};
+    }
     static int slope(glm::ivec2 p, glm::ivec2 q) { return (q.x > p.x) - (q.x < p.x); }
 
     int bottom_, bend_, top_;

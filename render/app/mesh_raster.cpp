@@ -162,7 +162,7 @@ class RasterMesher {
             if (!options_.max_deviation || options_.max_triangles || options_.level) return;
             std::vector<planet::CellCode> too_far;
             for (std::size_t i = 0; i < mesh_.cell.size(); ++i)
-                if (static_cast<double>(achieved_.by_triangle[i]) + patches_.sample_rounding() >
+                if (achieved_.by_triangle[i] + patches_.sample_rounding() >
                     *options_.max_deviation + measuring_slack_m)
                     too_far.push_back(mesh_.cell[i]);
             if (too_far.empty()) return;

@@ -8,7 +8,7 @@
 
 #include "planet/error.h"
 #include "planet/mesh/surface_mesh.h"
-#include "planet/patches/patch_mesh.h"
+#include "planet/patches/patch_measure.h"
 
 namespace planet {
 namespace {
@@ -256,6 +256,42 @@ TEST(PatchMesh, UniformLevelsAndKeptSamples) {
     expect_conforming(out, raster, true);
     for (const glm::ivec2 p : kept)
         EXPECT_EQ(std::count_if(out.vertices.begin(), out.vertices.end(), [&](const auto& v) { return v.at == p; }), 1);
+}
+
+// Max and rms of a written mesh, each sample once, against all samples and all triangles.
+TEST(PatchMeasure, CountsEverySampleOnce) {
+    for (const auto& [w, h, void_share] : {std::tuple{33, 33, 0.0},
+                                           {40, 23, 0.0},
+                                           {23, 40, 0.0},
+                                           {65, 17, 0.0},
+                                           {7, 2, 0.0},
+                                           {40, 23, 0.02},
+                                           {33, 33, 0.1}}) {
+        const auto source = std::make_shared<Raster>(bumpy(w, h, 8, void_share));
+        source->plain = true;
+        source->grid = {{500000.5, 4100000}, {30, 0.25}, {0.5, -29}};
+        const PatchRaster raster(*source);
+        const auto deviation = patch_deviations(raster);
+        PatchTriangulation mesh = coarsest(raster);
+        refine_to_tolerance(mesh, deviation, 25);
+        const PatchMesh out = extract(mesh, raster);
+        std::map<std::pair<int, int>, double> squares;
+        for (const auto& t : out.triangles) {
+            const std::array<LatticeVertex, 3> corners{out.vertices[t[0]], out.vertices[t[1]], out.vertices[t[2]]};
+            for_each_sample_in(corners, [&](glm::ivec2 p) {
+                if (const auto d = distance(raster, corners, p)) squares[{p.x, p.y}] = *d * *d;
+            });
+        }
+        double sum = 0;
+        for (const auto& [at, square] : squares) sum += square;
+        const RasterFrame frame(source, MeshFrame::source, VerticalDatum::egm96, nullptr);
+        const std::vector<glm::dvec3> written = place_vertices(out, frame);
+        const AchievedDeviation achieved = measure(out, written, raster, frame, nullptr);
+        EXPECT_EQ(achieved.samples, squares.size()) << w << 'x' << h;
+        EXPECT_EQ(achieved.uncovered, raster.valid_samples() - squares.size());
+        EXPECT_NEAR(achieved.max, worst_deviation(out, raster), 1e-6);
+        EXPECT_NEAR(achieved.rms, std::sqrt(sum / static_cast<double>(squares.size())), 1e-6);
+    }
 }
 
 TEST(PatchRaster, RefusesWhatHasNoArea) {
