@@ -12,10 +12,10 @@ namespace planet {
 
 namespace {
 
-// The normal of a vertex on a side of a cell meets the cell's plane slightly outside it: heights and the ellipsoid part
-// it from the chord by less than the flattening, below 1 % of the side. The weights of the corners there add up to 1, their absolute
-// values to less than this.
-constexpr double weights_at_most = 1.02;
+// The normal of a vertex on a side of a cell meets the cell's plane a little outside it, for normals of an ellipsoid that
+// differ do not meet each other. The weights of the corners there add up to 1, their absolute values to less than these:
+// of any cell, and of cells of bisection level 12 and more, which are at most 1/20 radius across.
+constexpr double weights_at_most = 1.02, weights_below = 1.001;
 
 // |N| / (n . N) is the most by which a plane moves along n for a metre across it.
 float largest_stretch(const TileLattice& lattice, std::span<const float> deviation) {
@@ -55,20 +55,20 @@ LatticeTile* PlanetLattice::tile(LocationCode root) {
         const LatticeTile* above = tile(root.ancestor(root.bisection_level() - tile_levels));
         if (!above || !above->below || !above->below->exists[root.bits() & (tile_cells - 1)]) return nullptr;
     }
-    return tiles_.emplace(root.bits(), read(root)).first->second.get();
+    return tiles_.emplace(root.bits(), read_with_own_deviations(root)).first->second.get();
 }
 
 void PlanetLattice::load(std::span<const LocationCode> roots) {
+    if (std::all_of(roots.begin(), roots.end(), [&](LocationCode r) { return find(r) != nullptr; })) return;
     std::vector<std::unique_ptr<LatticeTile>> loaded(roots.size());
     parallel_for(roots.size(), threads_, [&](std::size_t i) {
-        if (!find(roots[i])) loaded[i] = read(roots[i]);
+        if (!find(roots[i])) loaded[i] = read_with_own_deviations(roots[i]);
     });
     for (std::size_t i = 0; i < roots.size(); ++i)
         if (loaded[i]) tiles_.emplace(roots[i].bits(), std::move(loaded[i]));
 }
 
 std::unique_ptr<LatticeTile> PlanetLattice::read(LocationCode root) const {
-    static thread_local LatticeScratch scratch;
     std::optional<Tile> stored = store_->read(root);
     if (!stored) throw Error(Fault::bad_data, store_->where(), "tile " + to_string(root) + " is missing");
     auto tile = std::make_unique<LatticeTile>();
@@ -79,19 +79,24 @@ std::unique_ptr<LatticeTile> PlanetLattice::read(LocationCode root) const {
     // Stored undulations are whole 1/32 m or floats (README.md): nothing is lost.
     for (const GeoidUndulation N : stored->undulation) tile->undulation.push_back(static_cast<float>(N.m));
     tile->deviation = std::move(stored->deviation);
-    const bool inner = stored->child_exists.any();
-    if (inner) {
+    if (stored->child_exists.any()) {
         tile->below = std::make_unique<LatticeTile::Below>();
         tile->below->exists = stored->child_exists;
         tile->below->deviation = std::move(stored->child_deviation);
         tile->below->bound = tile->deviation;
     }
+    return tile;
+}
+
+std::unique_ptr<LatticeTile> PlanetLattice::read_with_own_deviations(LocationCode root) const {
+    static thread_local LatticeScratch scratch;
+    std::unique_ptr<LatticeTile> tile = read(root);
     place(*tile, scratch);
     planet::own_deviation(scratch.lattice, tile->deviation);
     for (std::size_t i = 1; i < tile->deviation.size(); ++i)
         if (!scratch.exists[i]) tile->deviation[i] = 0;
     tile->stretch = largest_stretch(scratch.lattice, tile->deviation);
-    if (inner) tile->below->lattice = scratch.lattice;
+    if (tile->below) tile->below->lattice = scratch.lattice;
     return tile;
 }
 
@@ -130,12 +135,16 @@ float PlanetLattice::settle(const LatticeTile& tile, unsigned local) {
 // The tiles below at positions first to end, and those below them.
 void PlanetLattice::raise_below(const LatticeTile& tile, unsigned first, unsigned end, const CellPlane& plane,
                                 float& worst) {
-    for (unsigned k = first; k < end; ++k) {
-        if (!(tile.below->deviation[k] > 0) || bound_below(tile, k, plane) <= worst) continue;
-        const LatticeTile* below = this->tile(LocationCode(tile.root.bits() << tile_levels | k));
-        place(*below, scratch_);
+    std::vector<LocationCode> roots;
+    for (unsigned k = first; k < end; ++k)
+        if (tile.below->deviation[k] > 0 && bound_below(tile, k, plane) > worst)
+            roots.emplace_back(tile.root.bits() << tile_levels | k);
+    load(roots);
+    for (const LocationCode root : roots) {
+        const LatticeTile& below = *find(root);
+        place(below, scratch_);
         worst = std::max(worst, certified_deviation(deviation_from(scratch_.lattice, plane)));
-        if (below->below) raise_below(*below, 0, tile_cells, plane, worst);
+        if (below.below) raise_below(below, 0, tile_cells, plane, worst);
     }
 }
 
@@ -151,7 +160,7 @@ float PlanetLattice::bound_below(const LatticeTile& tile, unsigned position, con
         most_facing = std::max(most_facing, facing);
         most = std::max(most, std::abs(plane.above(lattice.position(v), lattice.normal(v))));
     }
-    const double apart = weights_at_most * most * most_facing / least_facing;
+    const double apart = weights_below * most * most_facing / least_facing;
     return certified_deviation(apart + static_cast<double>(tile.below->deviation[position]));
 }
 

@@ -72,7 +72,8 @@ class PlanetLattice {
     LatticeTile* tile(LocationCode root);
     /// Loads tiles that are in the store, in parallel.
     void load(std::span<const LocationCode> roots);
-    /// A tile by itself, not kept. Safe to call from several threads.
+    /// A tile of the store by itself, not kept, with saturated deviations: they say what exists. Safe to call from several
+    /// threads.
     std::unique_ptr<LatticeTile> read(LocationCode root) const;
 
     /// Whether the cell's split vertex is in the store.
@@ -86,6 +87,7 @@ class PlanetLattice {
     std::size_t tile_count() const { return tiles_.size(); }
 
   private:
+    std::unique_ptr<LatticeTile> read_with_own_deviations(LocationCode root) const;
     float settle(const LatticeTile& tile, unsigned local);
     void raise_below(const LatticeTile& tile, unsigned first, unsigned end, const CellPlane& plane, float& worst);
     float bound_below(const LatticeTile& tile, unsigned position, const CellPlane& plane) const;

@@ -19,17 +19,18 @@ struct PlanetMeshOptions {
     /// 0: no limit. Else at least 8; where the deviation asked for takes more triangles, it gives way.
     std::size_t max_triangles = 0;
     /// Metres: by how much a writer will move a vertex at most. The deviation holds after that, unless it is below what
-    /// the rounding alone makes. vertex_rounding() measures it for a given writer.
+    /// the rounding alone makes.
     double rounding = 0;
     /// Directions (of any length > 0) at which the mesh reaches the finest level: the nearest finest vertex is one of its
     /// vertices.
-    std::vector<glm::dvec3> keep;
+    std::vector<glm::dvec3> keep{};
 };
 
 struct PlanetMesh {
     SurfaceMesh mesh;                 ///< ecef, metres; one strip; along the closed Sierpinski curve
     std::vector<LocationCode> cells;  ///< by triangle
-    /// Metres: the mesh is the least one within it, rounding included; infinity for a uniform mesh.
+    /// Metres: the deviation asked for, or the one that the limit of triangles allows, rounding apart: no cell deviates by
+    /// more. Infinity for a uniform mesh.
     double tolerance = 0;
 };
 
