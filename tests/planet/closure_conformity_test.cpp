@@ -28,7 +28,8 @@ std::vector<CellCode> split_cells_of(const Triangulation<Topo, Set>& t) {
 template <Topology Topo, class Set>
 class Walk {
   public:
-    Walk(const Topo& topology, int levels, unsigned seed) : t_(topology, levels), graph_(topology, levels), random_(seed) {
+    Walk(const Topo& topology, int levels, unsigned seed)
+        : t_(topology, levels), graph_(topology, levels), random_(seed) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(topology.root_count()); ++i)
             list(CellCode{1} << topology.root_bits() | i, levels);
     }
@@ -39,11 +40,18 @@ class Walk {
         switch (random_() % 8) {
             case 0:
             case 1:
-            case 2: split(cell, v); break;
+            case 2:
+                split(cell, v);
+                break;
             case 3:
-            case 4: merge(cell, v); break;
-            case 5: split_and_take_back(cell); break;
-            default: remove(cell, v);
+            case 4:
+                merge(cell, v);
+                break;
+            case 5:
+                split_and_take_back(cell);
+                break;
+            default:
+                remove(cell, v);
         }
     }
     void compare() {
@@ -213,7 +221,9 @@ void compare_sets(const Topo& topology, int levels) {
                 dense.remove(cell, [&](CellCode c, int step) { by_dense.emplace_back(c, step); });
                 sparse.remove(cell, [&](CellCode c, int step) { by_sparse.emplace_back(c, step); });
                 break;
-            case 1: ASSERT_EQ(dense.merge(cell), sparse.merge(cell)); break;
+            case 1:
+                ASSERT_EQ(dense.merge(cell), sparse.merge(cell));
+                break;
             default:
                 dense.split(cell, [&](CellCode c, CellCode) { by_dense.emplace_back(c, 0); });
                 sparse.split(cell, [&](CellCode c, CellCode) { by_sparse.emplace_back(c, 0); });

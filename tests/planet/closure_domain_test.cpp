@@ -79,8 +79,10 @@ TYPED_TEST(MergingDomain, OfTheCentreOfNinePatchesReachesAllNeighbors) {
         int leaves = 0;
         for (const int half : {0, 1}) {
             const auto count = [&](const auto& self, CellCode c) -> void {
-                if (!t.is_split(c)) ++leaves;
-                else self(self, c << 1), self(self, c << 1 | 1);
+                if (!t.is_split(c))
+                    ++leaves;
+                else
+                    self(self, c << 1), self(self, c << 1 | 1);
             };
             count(count, t.topology().root_of_patch(column, row, half));
         }
@@ -151,7 +153,8 @@ Domains compare_with_graph(const Topo& topology, int levels, Choose&& choose) {
     for (int rank = 0; rank < topology.root_count(); ++rank)
         full.for_each_split_below(topology.root(rank), [&](CellCode cell) {
             const int v = graph.split_vertex(graph_triangle(graph, topology, cell));
-            if (!choose(graph.vertices()[static_cast<std::size_t>(v)].at, graph.size()) || !seen.insert(v).second) return;
+            if (!choose(graph.vertices()[static_cast<std::size_t>(v)].at, graph.size()) || !seen.insert(v).second)
+                return;
             graph.set_all(true);
             auto t = full;
             std::vector<int> merged;
@@ -196,14 +199,15 @@ TYPED_TEST(MergingDomain, OfEveryVertexOfTheOctahedron) {
 TYPED_TEST(MergingDomain, NearCornersAndSidesOfTheOctahedronsFaces) {
     for (const int levels : {13, 14}) {
         int corners = 0, sides = 0;
-        compare_with_graph<TypeParam>(OctahedronTopology{}, levels, [&](const testing::LatticePoint& p, std::int64_t size) {
-            const auto a = glm::abs(p);
-            const std::int64_t most = std::max({a.x, a.y, a.z}), least = std::min({a.x, a.y, a.z});
-            const bool corner = most > size - size / 16, side = least <= 1 && (p.x + p.y + p.z) % 3 == 0;
-            corners += corner;
-            sides += side;
-            return corner || side;
-        });
+        compare_with_graph<TypeParam>(
+            OctahedronTopology{}, levels, [&](const testing::LatticePoint& p, std::int64_t size) {
+                const auto a = glm::abs(p);
+                const std::int64_t most = std::max({a.x, a.y, a.z}), least = std::min({a.x, a.y, a.z});
+                const bool corner = most > size - size / 16, side = least <= 1 && (p.x + p.y + p.z) % 3 == 0;
+                corners += corner;
+                sides += side;
+                return corner || side;
+            });
         EXPECT_GT(corners, 6 * 16);
         EXPECT_GT(sides, 12 * 16);
     }

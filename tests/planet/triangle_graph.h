@@ -39,7 +39,8 @@ inline std::vector<LatticeTriangle> root_triangles(const PatchGrid& grid, std::i
     for (int row = 0; row < grid.rows(); ++row)
         for (int column = 0; column < grid.columns(); ++column) {
             const LatticePoint sw(column * size, row * size, 0), se = sw + LatticePoint(size, 0, 0),
-                nw = sw + LatticePoint(0, size, 0), ne = se + LatticePoint(0, size, 0);
+                                                                 nw = sw + LatticePoint(0, size, 0),
+                                                                 ne = se + LatticePoint(0, size, 0);
             roots.push_back({sw, ne, nw});
             roots.push_back({ne, sw, se});
         }
@@ -204,8 +205,7 @@ std::vector<LatticeTriangle> leaf_triangles(const Triangulation<Topo, Set>& t) {
         self(self, cell << 1 | 1, parts[1]);
     };
     const auto roots = root_triangles(t.topology(), lattice_size(t.levels()));
-    for (std::size_t i = 0; i < roots.size(); ++i)
-        walk(walk, CellCode{1} << t.topology().root_bits() | i, roots[i]);
+    for (std::size_t i = 0; i < roots.size(); ++i) walk(walk, CellCode{1} << t.topology().root_bits() | i, roots[i]);
     return leaves;
 }
 
