@@ -38,7 +38,7 @@ class Triangulation {
 
     int level_of(CellCode cell) const { return bisection_level_of(cell, topology_.root_bits()); }
     bool is_split(CellCode cell) const { return split_.contains(cell); }
-    bool is_leaf(CellCode cell) const { return !splittable_and_split(cell) && exists(cell); }
+    bool is_leaf(CellCode cell) const { return exists(cell) && !is_split(cell); }
     /// In the triangulation, as a leaf or above leaves.
     bool exists(CellCode cell) const { return is_root(cell) || is_split(cell >> 1); }
 
@@ -47,17 +47,17 @@ class Triangulation {
     /// @return how many were split; 0 if it was split already
     template <class OnSplit>
     int split(CellCode cell, OnSplit&& on_split) {
-        if (is_split(cell)) return 0;
-        int count = 0;
-        if (!is_root(cell)) count += split(cell >> 1, on_split);
+        const Insertion inserted = split_.insert(cell);
+        if (!inserted.is_new) return 0;
         const CellCode n = topology_.neighbor(cell);
-        if (n != 0) {
-            if (!is_root(n)) count += split(n >> 1, on_split);
-            split_.insert(n);
+        const bool other_parent_split = n == 0 || split_.insert(n).parent_split;
+        int count = 1;
+        if (!is_root(cell)) {
+            if (!inserted.parent_split) count += split(cell >> 1, on_split);
+            if (!other_parent_split) count += split(n >> 1, on_split);
         }
-        split_.insert(cell);
         on_split(cell, n);
-        return count + 1;
+        return count;
     }
     int split(CellCode cell) {
         return split(cell, [](CellCode, CellCode) {});
@@ -83,19 +83,9 @@ class Triangulation {
         if (const CellCode n = topology_.neighbor(cell); n != 0) frontier_.push_back(n);
         std::size_t visited = 0;
         for (int step = 1; !frontier_.empty(); ++step) {
-            opened_.clear();
-            for (const CellCode c : frontier_) {
-                on_merge(c, step);
-                for (const CellCode child : {c << 1, c << 1 | 1})
-                    if (splittable_and_split(child)) opened_.push_back(child);
-                split_.drop(c);
-            }
             visited += frontier_.size();
-            frontier_.clear();
-            for (const CellCode child : opened_) {
-                const CellCode across = topology_.neighbor(child);
-                if (across != 0 && is_split(across)) frontier_.push_back(across);
-            }
+            merge_frontier(step, on_merge);
+            cross_to_next_frontier();
         }
         return visited;
     }
@@ -112,7 +102,7 @@ class Triangulation {
     /// Visits every split cell below and including `cell`, in pre-order.
     template <class OnCell>
     void for_each_split_below(CellCode cell, OnCell&& on_cell) const {
-        if (!splittable_and_split(cell)) return;
+        if (!is_split(cell)) return;
         on_cell(cell);
         for_each_split_below(cell << 1, on_cell);
         for_each_split_below(cell << 1 | 1, on_cell);
@@ -132,14 +122,36 @@ class Triangulation {
 
   private:
     bool is_root(CellCode cell) const { return cell >> topology_.root_bits() == 1; }
-    bool splittable_and_split(CellCode cell) const { return level_of(cell) < levels() && is_split(cell); }
-    bool has_split_child(CellCode cell) const {
-        return level_of(cell) + 1 < levels() && (is_split(cell << 1) || is_split(cell << 1 | 1));
+    bool has_split_child(CellCode cell) const { return is_split(cell << 1) || is_split(cell << 1 | 1); }
+
+    // Both write every candidate and step past those that count: which ones do is anybody's guess, a processor's too.
+    template <class OnMerge>
+    void merge_frontier(int step, OnMerge& on_merge) {
+        opened_.resize(2 * frontier_.size());
+        CellCode* end = opened_.data();
+        for (const CellCode c : frontier_) {
+            on_merge(c, step);
+            const unsigned children = split_.drop(c);
+            *end = c << 1;
+            end += children & 1;
+            *end = c << 1 | 1;
+            end += children >> 1;
+        }
+        opened_.resize(static_cast<std::size_t>(end - opened_.data()));
+    }
+    void cross_to_next_frontier() {
+        frontier_.resize(opened_.size());
+        CellCode* end = frontier_.data();
+        for (const CellCode child : opened_) {
+            *end = topology_.neighbor(child);
+            end += is_split(*end);
+        }
+        frontier_.resize(static_cast<std::size_t>(end - frontier_.data()));
     }
 
     template <class OnLeaf>
     void leaves_below(CellCode cell, OnLeaf&& on_leaf) const {
-        if (splittable_and_split(cell)) {
+        if (is_split(cell)) {
             leaves_below(cell << 1, on_leaf);
             leaves_below(cell << 1 | 1, on_leaf);
         } else {

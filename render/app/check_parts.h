@@ -14,6 +14,7 @@ namespace render {
 struct CheckPart {
     std::vector<planet::CheckRow> rows{};
     std::string skipped{};  ///< what is not measured because this machine has no means to, and why; empty: nothing
+    std::string tables{};   ///< printed above all rows
 };
 
 /// Each file that SHA256SUMS in the data folder names: 0 if its content is what was shipped, 1 if not or if it is
@@ -35,5 +36,9 @@ CheckPart check_vertex_shaders();
 /// @param progress told of the baking
 /// Throws planet::Error(bad_data) if the data cannot be read.
 CheckPart check_meshes(const std::function<void(std::string_view step, double fraction)>& progress);
+
+/// Only with --closure: what removing a vertex takes along, by experiment and by the formulas of
+/// planet/quadtree/patch_lattice.h, for patches of 2^9 to 2^25 triangles: the worst case and the mean. Two tables.
+CheckPart check_closure();
 
 }  // namespace render

@@ -20,6 +20,7 @@ namespace {
 struct Part {
     const char* name;
     CheckPart (*measure)(Progress& progress);
+    bool only_if_asked = false;
 };
 constexpr Part parts[] = {
     {"positions",
@@ -33,6 +34,7 @@ constexpr Part parts[] = {
          return check_meshes([&](std::string_view step, double fraction) { progress.update(step, fraction); });
      }},
     {"data", [](Progress&) { return check_data_files(); }},
+    {"closure", [](Progress&) { return check_closure(); }, true},
 };
 
 /// Three significant digits, without a locale.
@@ -60,20 +62,23 @@ nlohmann::ordered_json json_from_rows(const std::vector<planet::CheckRow>& rows)
 }
 
 struct Certificate {
+    std::string tables;
     std::vector<planet::CheckRow> rows;
     std::vector<std::string> reasons;  ///< a line for each part that could not be measured
     std::vector<std::string> skipped;  ///< a line for each that this machine has no means for
 };
 
-Certificate measure(Report& report) {
+Certificate measure(Report& report, bool closure) {
     Progress progress;
     Certificate all;
     for (const Part& part : parts) {
+        if (part.only_if_asked && !closure) continue;
         progress.update(part.name, std::nan(""));
         const auto step = report.step(part.name);
         try {
             const CheckPart more = part.measure(progress);
             all.rows.insert(all.rows.end(), more.rows.begin(), more.rows.end());
+            if (!more.tables.empty()) all.tables += more.tables + '\n';
             if (!more.skipped.empty()) all.skipped.push_back(more.skipped);
         } catch (const planet::Error& error) {
             // What cannot be measured does not hold; the rest of the certificate is still worth having.
@@ -84,10 +89,11 @@ Certificate measure(Report& report) {
     return all;
 }
 
-void run(const std::string& json) {
+void run(const std::string& json, bool closure) {
     Report report("check", json);
-    const auto [rows, reasons, skipped] = measure(report);
+    const auto [tables, rows, reasons, skipped] = measure(report, closure);
     const auto failed = std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !row.passed; });
+    std::cout << tables;
     print(rows);
     for (const auto& reason : reasons) std::cout << reason << '\n';
     for (const auto& line : skipped) std::cout << "skipped: " << line << '\n';
@@ -107,11 +113,14 @@ void run(const std::string& json) {
 
 void add_check(CLI::App& program) {
     auto json = std::make_shared<std::string>();
+    auto closure = std::make_shared<bool>(false);
     CLI::App* command =
         add_command(program, "check", "The accuracy certificate: exit status 1 if a bound does not hold",
                     "octaglobe check --json certificate.json");
+    command->add_flag("--closure", *closure,
+                      "Also measure what removing a vertex takes along, and print two tables of it");
     add_json_option(*command, *json);
-    command->final_callback([json] { run(*json); });
+    command->final_callback([json, closure] { run(*json, *closure); });
 }
 
 }  // namespace render
