@@ -18,6 +18,9 @@ using planet::CellCode;
 using planet::Error;
 using planet::Fault;
 
+/// More would hide the triangles.
+constexpr std::size_t most_marks = 3000;
+
 /// What a topology adds: where vertices are, and which one was meant.
 class Patches {
   public:
@@ -174,13 +177,14 @@ void run(const Space& space, const MeshOptions& options, Report& report) {
         step.push_back(merged == domain.step_of.end() ? std::uint8_t{0} : merged->second);
     });
     planet::SurfaceMesh surface = builder.take();
-    MeshPicture picture{.vertices = surface.vertices,
-                        .triangles = surface.triangles,
-                        .level = surface.level,
-                        .step = step,
-                        .marks = domain.removed,
-                        .planet = Space::is_planet,
-                        .look_from = Space::is_planet ? domain.removed[0] : glm::dvec3(0, 0, 1)};
+    MeshPicture picture{
+        .vertices = surface.vertices,
+        .triangles = surface.triangles,
+        .level = surface.level,
+        .step = step,
+        .marks = std::span(domain.removed).first(domain.removed.size() <= most_marks ? domain.removed.size() : 1),
+        .planet = Space::is_planet,
+        .look_from = Space::is_planet ? domain.removed[0] : glm::dvec3(0, 0, 1)};
     if (Space::is_planet) picture.window = merging_window(picture);
     output.draw(picture, report);
     const planet::MeshRounding rounding = planet::round_to_format(surface, reference, output.format());
