@@ -2,25 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
 
 #include "planet/error.h"
+#include "planet/patches/candidate_queue.h"
 
 namespace planet {
 
 namespace {
 
 constexpr float never = std::numeric_limits<float>::infinity();
-
-// Ordered by cost, then finest first.
-struct Candidate {
-    float cost;
-    CellCode cell;  ///< names its diamond
-    friend bool operator<(const Candidate& a, const Candidate& b) {
-        return a.cost != b.cost ? a.cost < b.cost : a.cell > b.cell;
-    }
-    friend bool operator>(const Candidate& a, const Candidate& b) { return b < a; }
-};
 
 void saturate(const PatchGrid& grid, DenseQuadtree<float>& cost) {
     for (int level = cost.levels() - 1; level >= 0; --level) {
@@ -161,20 +151,32 @@ struct Change {
     }
 };
 
+// A split cell.
+struct Cell {
+    double squares;           ///< m^2 added if it is merged
+    std::uint32_t triangles;  ///< saved if it is merged
+    float cost;               ///< of its diamond as last worked out, `never` if it stays; in the cell that names it
+};
+
 class RmsDecimation {
   public:
     RmsDecimation(PatchTriangulation& mesh, const PatchRaster& raster, const TriangleCount& count,
-                  DenseQuadtree<float> saturated)
+                  const DenseQuadtree<float>& saturated)
         : mesh_(mesh),
           raster_(raster),
           count_(count),
-          cost_(std::move(saturated)),
-          squares_(patch_squared_deviations(raster)),
-          triangles_(grid().root_bits(), grid().root_count(), mesh.levels()),
-          merged_(grid().root_bits(), mesh.levels()) {}
+          cells_(grid().root_bits(), grid().root_count(), mesh.levels()),
+          merged_(grid().root_bits(), mesh.levels()) {
+        const DenseQuadtree<double> squared = patch_squared_deviations(raster);
+        for (int level = 0; level < cells_.levels(); ++level) {
+            const auto cells = cells_.level(level);
+            const auto squares = squared.level(level);
+            const auto costs = saturated.level(level);
+            for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = {squares[i], 0, costs[i]};
+        }
+    }
 
     void run(const DecimationOptions& options, DecimationReport& report) {
-        for (int level = 0; level < triangles_.levels(); ++level) std::ranges::fill(triangles_.level(level), 0u);
         for (int rank = 0; rank < grid().root_count(); ++rank) {
             const CellCode root = grid().root(rank);
             squared_ += differences(root, 0, raster_.lattice().root_corners(root)).squares;
@@ -192,14 +194,15 @@ class RmsDecimation {
     // What a cell is now. Replaces the squared deviations of split cells by what merging them would add.
     Change differences(CellCode cell, int level, const LatticeCorners& c) {
         if (level == mesh_.levels() || raster_.outside(c) || !mesh_.is_split(cell)) {
-            const double squares = level == mesh_.levels() ? 0 : squares_.at(cell, level);
+            const double squares = level == mesh_.levels() ? 0 : cells_.at(cell, level).squares;
             return {squares, static_cast<std::int64_t>(count_.of_leaf(c))};
         }
         const Change first = differences(cell << 1, level + 1, PatchLattice::child(c, 0)),
                      second = differences(cell << 1 | 1, level + 1, PatchLattice::child(c, 1));
         const Change now{first.squares + second.squares, first.triangles + second.triangles};
-        squares_[cell] -= now.squares;
-        triangles_[cell] = static_cast<std::uint32_t>(now.triangles) - static_cast<std::uint32_t>(count_.of_leaf(c));
+        cells_[cell].squares -= now.squares;
+        cells_[cell].triangles =
+            static_cast<std::uint32_t>(now.triangles) - static_cast<std::uint32_t>(count_.of_leaf(c));
         return now;
     }
 
@@ -215,8 +218,9 @@ class RmsDecimation {
         for (int level = first_level; begin < domain_.size(); ++level) {
             const std::size_t end = domain_.size();
             for (std::size_t i = begin; i < end; ++i) {
-                change.squares += squares_.at(domain_[i], level);
-                change.triangles += triangles_.at(domain_[i], level);
+                const Cell& merged = cells_.at(domain_[i], level);
+                change.squares += merged.squares;
+                change.triangles += merged.triangles;
             }
             if (level + 1 == mesh_.levels()) break;
             for (std::size_t i = begin; i < end; ++i) merged_.insert(domain_[i]);
@@ -239,7 +243,7 @@ class RmsDecimation {
     }
 
     void set_cost(CellCode cell, float cost) {
-        cost_[cell] = cost;
+        cells_[cell].cost = cost;
         if (cost < never) queue_.push({cost, cell});
     }
 
@@ -247,11 +251,11 @@ class RmsDecimation {
         std::vector<Candidate> all;
         for (int rank = 0; rank < grid().root_count(); ++rank)
             mesh_.for_each_split_below(grid().root(rank), [&](CellCode cell) {
-                if (diamond(grid(), cell) != cell || cost_[cell] == never) return;
-                cost_[cell] = static_cast<float>(domain(cell).cost());
-                if (cost_[cell] < never) all.push_back({cost_[cell], cell});
+                if (diamond(grid(), cell) != cell || cells_[cell].cost == never) return;
+                cells_[cell].cost = static_cast<float>(domain(cell).cost());
+                if (cells_[cell].cost < never) all.push_back({cells_[cell].cost, cell});
             });
-        queue_ = Queue(std::greater<>(), std::move(all));
+        queue_ = CandidateQueue(std::move(all));
     }
 
     // false: nothing is left that may go.
@@ -259,7 +263,7 @@ class RmsDecimation {
         while (!queue_.empty()) {
             const Candidate next = queue_.top();
             queue_.pop();
-            if (!mesh_.is_split(next.cell) || cost_[next.cell] != next.cost) continue;  // superseded
+            if (!mesh_.is_split(next.cell) || cells_[next.cell].cost != next.cost) continue;  // superseded
             const Change change = domain(next.cell);
             const Candidate now{static_cast<float>(change.cost()), next.cell};
             if (!queue_.empty() && queue_.top() < now) {
@@ -280,14 +284,14 @@ class RmsDecimation {
     void remove(CellCode cell) {
         pending_.clear();
         mesh_.remove(cell, [&](CellCode merged, int step) {
-            double& squares = squares_[merged];
-            std::uint32_t& triangles = triangles_[merged];
+            Cell& gone = cells_[merged];
             for (CellCode above = merged >> 1; above >> grid().root_bits() != 0; above >>= 1) {
-                squares_[above] -= squares;
-                triangles_[above] -= triangles;
+                Cell& cell_above = cells_[above];
+                cell_above.squares -= gone.squares;
+                cell_above.triangles -= gone.triangles;
             }
-            squares = 0;
-            triangles = 0;
+            gone.squares = 0;
+            gone.triangles = 0;
             if (step > 1) pending_.push_back(merged >> 1);
         });
         while (!pending_.empty()) {
@@ -299,7 +303,7 @@ class RmsDecimation {
 
     // Where the cost has fallen, so may have the costs of its parents.
     void lower(CellCode cell) {
-        const float known = cost_[cell];
+        const float known = cells_[cell].cost;
         if (!mesh_.is_split(cell) || known == never) return;
         const auto cost = static_cast<float>(domain(cell).cost());
         if (!(cost < known)) return;
@@ -309,16 +313,12 @@ class RmsDecimation {
         if (const CellCode n = grid().neighbor(cell); n != 0) pending_.push_back(n >> 1);
     }
 
-    using Queue = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
-
     PatchTriangulation& mesh_;
     const PatchRaster& raster_;
     const TriangleCount& count_;
-    DenseQuadtree<float> cost_;               ///< by diamond, as last worked out; `never`: it stays
-    DenseQuadtree<double> squares_;           ///< by split cell: added if it is merged
-    DenseQuadtree<std::uint32_t> triangles_;  ///< by split cell: saved if it is merged
-    DenseSplitSet merged_;                    ///< of domain(); empty between
-    Queue queue_;
+    DenseQuadtree<Cell> cells_;
+    DenseSplitSet merged_;  ///< of domain(); empty between
+    CandidateQueue queue_;
     std::vector<CellCode> domain_, pending_;
     double squared_ = 0;
     std::size_t costed_ = 0;
@@ -339,12 +339,12 @@ DecimationReport decimate(PatchTriangulation& mesh, const PatchRaster& raster, c
     DecimationReport report;
     report.triangles_before = report.triangles = count.of_mesh(mesh);
     const std::vector<CellCode> kept = kept_cells(mesh, raster.lattice(), options.keep);
-    DenseQuadtree<float> cost = saturated_with_kept(mesh.topology(), deviation, kept);
+    const DenseQuadtree<float> cost = saturated_with_kept(mesh.topology(), deviation, kept);
     mesh = WeightlessRemoval(mesh, raster, cost).run();
     if (options.priority == DecimationPriority::max)
         decimate_by_largest(mesh, count, cost, options, report);
     else
-        RmsDecimation(mesh, raster, count, std::move(cost)).run(options, report);
+        RmsDecimation(mesh, raster, count, cost).run(options, report);
     return report;
 }
 
