@@ -5,7 +5,8 @@
 //
 //   max   the largest deviation in the full domain: saturated, so that a vertex costs at least what any vertex that depends
 //         on it costs, whatever the mesh. Decimation to a cost is the walk "split iff the saturated deviation > cost".
-//   rms   squared deviation added, m^2, per triangle removed, in the present mesh.
+//   rms   squared deviation added, m^2, per triangle removed, in the present mesh. May be negative. (At the raster's border
+//         a removal can save no triangle: it is then free, or never made if it adds to the deviation.)
 //
 // Squared deviations and triangles of a mesh are sums over its leaves. What a removal changes is a sum over its *maximal
 // merged* triangles: in each, one triangle for all the leaves below it. Those differences are kept for every cell, exact at
@@ -34,7 +35,7 @@ struct DecimationOptions {
     /// Removes nothing dearer: m (max), m^2 a triangle (rms).
     double max_cost = std::numeric_limits<double>::infinity();
     /// Vertices that stay, with all that they depend on. Samples that are no vertices of the given mesh are ignored.
-    std::span<const glm::ivec2> keep;
+    std::span<const glm::ivec2> keep = {};
 };
 
 struct DecimationReport {
