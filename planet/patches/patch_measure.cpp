@@ -226,12 +226,19 @@ Sum measure_triangle(Way& way, const Corners2& c, const std::array<glm::dvec3, 3
             c, [&](int x, int y) { return plane.at(x, y) + plane.per_column * ramp - load(raster.row(y) + x); });
     }
     const glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const double least_across = 1e-9 * glm::length(n);
+    // A triangle that stands upright or has no area, as beside a row at a pole, is no plane to measure from.
+    const auto distance = [&](const glm::dvec3& sample, const glm::dvec3& up) {
+        const double across = glm::dot(up, n);
+        if (std::abs(across) > least_across) return glm::dot(p[0] - sample, n) / across;
+        return std::min({glm::distance(sample, p[0]), glm::distance(sample, p[1]), glm::distance(sample, p[2])});
+    };
     const auto columns = static_cast<std::size_t>(raster.width()), count = samples->position.size();
     return way.triangle(c, [&](int x, int y) {
         Lanes t{};
         const std::size_t i = static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x);
         for (std::size_t w = 0; w < std::min(width, count - i); ++w)
-            t[w] = glm::dot(p[0] - samples->position[i + w], n) / glm::dot(glm::dvec3(samples->up[i + w]), n);
+            t[w] = distance(samples->position[i + w], glm::dvec3(samples->up[i + w]));
         return t;
     });
 }

@@ -28,7 +28,7 @@ PlacedSamples place_samples(const PatchRaster& raster, const RasterFrame& frame)
 std::vector<glm::dvec3> place_vertices(const PatchMesh& mesh, const RasterFrame& frame);
 
 /// The distance along the vertical of each sample, from the plane of each triangle that holds it in the lattice, as the
-/// vertices were written. Each sample counts once for the rms: in the triangle a little to its right and above, or where
+/// vertices were written; from the nearest corner of a triangle that is no such plane, upright or without area. Each sample counts once for the rms: in the triangle a little to its right and above, or where
 /// there may be none, in the first that holds it. The same bits whatever the threads.
 /// @param written by vertex, in the frame, rounded as its format rounds @param samples of a frame that is not affine
 AchievedDeviation measure(const PatchMesh& mesh, std::span<const glm::dvec3> written, const PatchRaster& raster,

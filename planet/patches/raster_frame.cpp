@@ -8,6 +8,15 @@
 
 namespace planet {
 
+namespace {
+
+// PROJ takes what is less far from WGS84 there, as do rasters (their longitude and latitude are those of WGS84).
+bool on_another_planet(const Raster& raster) {
+    return std::abs(raster.radius_m - wgs84.a) > 0.01 * wgs84.a;
+}
+
+}  // namespace
+
 RasterFrame::RasterFrame(std::shared_ptr<const Raster> raster, MeshFrame frame, VerticalDatum datum,
                          std::shared_ptr<const Geoid> geoid)
     : raster_(std::move(raster)),
@@ -20,7 +29,15 @@ RasterFrame::RasterFrame(std::shared_ptr<const Raster> raster, MeshFrame frame, 
             throw Error(Fault::bad_usage, raster_->name, "has no place on the planet", "--frame source or enu");
         return;
     }
-    reference_.vertical_datum = name_of(datum);
+    if (on_another_planet(*raster_)) {
+        if (frame != MeshFrame::source)
+            throw Error(Fault::bad_usage, raster_->name,
+                        "is on another planet, whose equator has a radius of " +
+                            std::to_string(std::lround(raster_->radius_m / 1000)) + " km",
+                        "--frame source");
+    } else {
+        reference_.vertical_datum = name_of(datum);
+    }
     if (frame == MeshFrame::source) {
         reference_.crs = raster_->crs;
         reference_.geographic = raster_->geographic();

@@ -18,6 +18,7 @@ class RasterFrame {
   public:
     /// @param datum of the raster's heights; source and utm keep them as they are, enu and ecef need heights above the
     ///        ellipsoid @param geoid for datum egm96 with enu and ecef; else may be null
+    /// Heights of a raster on another planet are of no datum here, and it has no utm, enu or ecef: Error(bad_usage).
     /// A raster that is `plain` has its own coordinates in enu too, and no utm or ecef: Error(bad_usage).
     RasterFrame(std::shared_ptr<const Raster> raster, MeshFrame frame, VerticalDatum datum,
                 std::shared_ptr<const Geoid> geoid);

@@ -1,5 +1,7 @@
 // octaglobe mesh: rasters and the planet as triangulations with a bound.
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "planet/error.h"
@@ -22,14 +24,24 @@ std::string file_name(Where where, const std::string& text) {
     return text;
 }
 
+std::filesystem::path picture_name(Where where, const std::string& text) {
+    std::filesystem::path path = file_name(where, text);
+    std::string ending = path.extension().native();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff"})
+        if (ending == known) return path;
+    throw Error(Fault::bad_usage, where, shown(text) + " has no ending of a picture", ".png, .jpg or .tif");
+}
+
 void add_what(CLI::App& command, MeshOptions& o) {
-    add_value(command, "dem", "FILE", "A raster of heights, in any format and CRS that GDAL reads",
+    add_value(command, "dem", "FILE", "A raster of heights, in any format and CRS that GDAL reads; a heightmap too",
               [&](Where where, const std::string& text) { o.source = file_name(where, text); });
-    command.add_flag("--planet", o.planet, "The whole planet, closed, from the default Earth or --store");
+    command.add_flag("--planet", o.planet, "Instead: the whole planet, closed");
     add_value(command, "--store", "FILE", "A baked store instead of the default Earth",
               [&](Where where, const std::string& text) { o.store = file_name(where, text); })
         ->needs("--planet");
-    add_value(command, "--patches", "CxR", "A grid of flat square patches, for --remove",
+    add_value(command, "--patches", "CxR", "Instead: flat square patches, up to 64x64, for --remove",
               [&](Where where, const std::string& text) {
                   const PictureSize size = parse_size(where, text);
                   if (std::max(size.width, size.height) > 64)
@@ -45,16 +57,18 @@ void add_what(CLI::App& command, MeshOptions& o) {
 }
 
 void add_how_much(CLI::App& command, MeshOptions& o) {
-    add_value(command, "--max-deviation", "METRES", "The bound: no sample is farther from the triangles",
+    add_value(command, "--max-deviation", "METRES",
+              "The bound: no sample is farther from the triangles, along the vertical",
               [&](Where where, const std::string& text) {
                   o.max_deviation = parse_distance(where, text, {0, largest_deviation_m});
               });
-    add_value(command, "--max-triangles", "COUNT", "The budget: never more, with the least deviation",
+    add_value(command, "--max-triangles", "COUNT",
+              "The budget: never more, with the least deviation; goes before the bound",
               [&](Where where, const std::string& text) {
                   o.max_triangles = static_cast<std::size_t>(parse_whole(where, text, 2, 4'000'000'000));
               });
     add_value(
-        command, "--level", "LEVEL", "The uniform mesh of a bisection level",
+        command, "--level", "LEVEL", "Instead: the uniform mesh of a bisection level; 2 are twice as fine",
         [&](Where where, const std::string& text) { o.level = static_cast<int>(parse_whole(where, text, 0, 56)); });
     add_value(
         command, "--priority", "WHICH",
@@ -63,10 +77,11 @@ void add_how_much(CLI::App& command, MeshOptions& o) {
             o.priority = static_cast<MeshPriority>(parse_choice(where, text, {"least", "max", "rms"}));
         })
         ->needs("--max-triangles");
-    add_value(command, "--keep", "FILE", "Points and lines whose samples must stay: GeoJSON, GeoPackage, ...",
+    add_value(command, "--keep", "FILE", "Points, lines and outlines whose samples must stay: GeoJSON, GeoPackage, ...",
               [&](Where where, const std::string& text) { o.keep = file_name(where, text); });
     add_value(command, "--remove", "A,B",
-              "Remove a vertex with its merging domain: sample X,Y of the patches, or LAT,LON with --planet --level",
+              "Remove a vertex from the finest mesh, with all that depend on it: sample X,Y of --patches, or the "
+              "one nearest to LAT,LON of --planet --level 1 to 22",
               [&](Where where, const std::string& text) { o.remove = file_name(where, text); });
 }
 
@@ -74,8 +89,8 @@ void add_where_to(CLI::App& command, MeshOptions& o) {
     add_value(command, "-o,--output", "FILE", "The mesh: .glb, .ply, .obj or .stl",
               [&](Where where, const std::string& text) { o.output = file_name(where, text); });
     add_value(command, "--frame", "FRAME",
-              "ecef, enu (local east, north, up), utm or source (the raster's CRS) [.glb, .stl: enu; else source; "
-              "planet: ecef]",
+              "Of the coordinates: source (the raster's CRS), utm, enu (metres east, north, up of its middle) or ecef "
+              "[.ply, .obj: source; .glb, .stl: enu; the planet has ecef only]",
               [&](Where where, const std::string& text) {
                   o.frame = static_cast<planet::MeshFrame>(parse_choice(where, text, {"source", "utm", "enu", "ecef"}));
               });
@@ -83,15 +98,19 @@ void add_where_to(CLI::App& command, MeshOptions& o) {
               [&](Where where, const std::string& text) {
                   o.datum = static_cast<planet::VerticalDatum>(parse_choice(where, text, {"egm96", "ellipsoid"}));
               });
-    add_value(command, "--picture", "FILE", "A picture of the triangles: .png, .jpg, .tif or .exr",
-              [&](Where where, const std::string& text) { o.picture = file_name(where, text); });
-    add_value(command, "--size", "WxH", "Of the picture [1600x1600]", [&](Where where, const std::string& text) {
-        o.picture_size = parse_size(where, text);
-        const auto [low, high] = std::minmax(o.picture_size.width, o.picture_size.height);
-        if (low < picture_size_min || high > picture_size_max)
-            throw Error(Fault::bad_usage, where, shown(text) + " is out of range",
-                        std::to_string(picture_size_min) + " to " + std::to_string(picture_size_max) + " a side");
-    })->needs("--picture");
+    add_value(command, "--picture", "FILE", "A picture of the triangles: .png, .jpg or .tif",
+              [&](Where where, const std::string& text) { o.picture = picture_name(where, text); });
+    add_value(command, "--size", "WxH", "Of the picture [1600 wide, as high as the terrain; the planet 1600x1600]",
+              [&](Where where, const std::string& text) {
+                  const PictureSize size = parse_size(where, text);
+                  const auto [low, high] = std::minmax(size.width, size.height);
+                  if (low < picture_size_min || high > picture_size_max)
+                      throw Error(
+                          Fault::bad_usage, where, shown(text) + " is out of range",
+                          std::to_string(picture_size_min) + " to " + std::to_string(picture_size_max) + " a side");
+                  o.picture_size = size;
+              })
+        ->needs("--picture");
     add_json_option(command, o.json);
 }
 
@@ -99,27 +118,42 @@ void require(bool holds, Where where, Where what, Where accepted) {
     if (!holds) throw Error(Fault::bad_usage, where, what, accepted);
 }
 
+void check_files(const MeshOptions& o) {
+    require(o.output || o.picture || !o.json.empty(), "mesh", "nothing to write",
+            "-o FILE, --picture FILE or --json FILE");
+    const std::filesystem::path json = o.json;
+    const bool twice = (o.output && (o.output == o.picture || *o.output == json)) || (o.picture && *o.picture == json);
+    require(!twice, "mesh", "one file for two things", "--output, --picture and --json with a file each");
+}
+
+void check_removal(const MeshOptions& o) {
+    require(o.source.empty(), "--remove", "of a raster", "--patches, or --planet --level");
+    require(!o.max_deviation && !o.max_triangles && o.keep.empty() && !o.frame && !o.datum && !o.store, "--remove",
+            "goes with no bound, budget, features, frame, datum or store",
+            "--patches --patch-level, or --planet --level");
+    if (o.planet)
+        require(o.level && *o.level >= 1 && *o.level <= 22, "--remove", "needs a level", "--planet --level 1 to 22");
+    else
+        require(!o.level, "--level", "is for --planet and rasters", "--patch-level");
+}
+
 void check(const MeshOptions& o) {
     const int kinds = !o.source.empty() + o.planet + (o.columns > 0);
     require(kinds == 1, "mesh", kinds == 0 ? "nothing to mesh" : "more than one thing to mesh",
             "a raster, or --planet, or --patches");
-    require(o.output || o.picture || !o.json.empty(), "mesh", "nothing to write",
-            "-o FILE, --picture FILE or --json FILE");
-    if (!o.remove.empty()) {
-        require(o.source.empty(), "--remove", "of a raster", "--patches, or --planet --level");
-        require(!o.max_deviation && !o.max_triangles && o.keep.empty() && !o.frame, "--remove",
-                "goes with no bound, budget, frame or features", "--level, --patch-level");
-        if (!o.planet) return;
-        require(o.level && *o.level >= 1 && *o.level <= 22, "--remove", "needs a level", "--planet --level 1 to 22");
-        return;
-    }
+    check_files(o);
+    if (!o.remove.empty()) return check_removal(o);
     require(o.columns == 0, "--patches", "without a vertex to remove", "--remove X,Y");
     require(o.max_deviation || o.max_triangles || o.level, "mesh", "no bound given",
             "--max-deviation, --max-triangles or --level");
     require(!o.level || (!o.max_deviation && !o.max_triangles), "--level", "goes with no bound and no budget",
             "--level alone");
-    if (o.planet)
-        require(!o.frame || *o.frame == planet::MeshFrame::ecef, "--frame", "the planet has one frame", "ecef");
+    if (!o.planet) return;
+    require(!o.frame || *o.frame == planet::MeshFrame::ecef, "--frame", "the planet has one frame", "ecef");
+    require(!o.datum, "--datum", "is for rasters", "--planet without it");
+    require(o.max_triangles.value_or(8) >= 8, "--max-triangles", "is too few for the planet", "8 or more");
+    require(!o.level || o.keep.empty(), "--keep", "goes with no level of the planet",
+            "--max-deviation or --max-triangles");
 }
 
 void run(const MeshOptions& options) {
@@ -138,9 +172,12 @@ void run(const MeshOptions& options) {
 
 void add_mesh(CLI::App& program) {
     auto options = std::make_shared<MeshOptions>();
-    CLI::App* command = add_command(program, "mesh", "A mesh of a raster or of the planet, within a bound or a budget",
-                                    "octaglobe mesh dem.tif --max-deviation 20 -o terrain.glb\n"
-                                    "  octaglobe mesh --planet --max-deviation 500 -o earth.glb");
+    CLI::App* command =
+        add_command(program, "mesh", "A mesh of a raster or of the planet, within a bound or a budget",
+                    "octaglobe mesh dem.tif --max-deviation 20 -o terrain.glb\n"
+                    "  octaglobe mesh dem.tif --max-triangles 1000 --keep ridges.geojson --frame utm -o t.ply\n"
+                    "  octaglobe mesh --planet --max-deviation 2000 -o earth.glb --json report.json\n"
+                    "  octaglobe mesh --patches 3x3 --patch-level 4 --remove 24,24 --picture domain.png");
     add_what(*command, *options);
     add_how_much(*command, *options);
     add_where_to(*command, *options);

@@ -187,9 +187,10 @@ void run(const Space& space, const MeshOptions& options, Report& report) {
         .look_from = Space::is_planet ? domain.removed[0] : glm::dvec3(0, 0, 1)};
     if (Space::is_planet) picture.window = merging_window(picture);
     if (picture.window && picture.window->radius > 0.8 * planet::wgs84.a) picture.window.reset();
-    output.draw(picture, report);
     const planet::MeshRounding rounding = planet::round_to_format(surface, reference, output.format());
     output.write(surface, reference, rounding, report);
+    output.draw(picture, report);
+    output.commit();
     report_mesh(surface, reference, report);
     fill_report(domain, label, report);
     std::cout << "vertex " << shown(options.remove) << ": label " << label << " (" << planet::vertex_grid(label)

@@ -33,13 +33,13 @@ struct MeshOptions {
     std::string remove;  ///< "A,B": a place on the planet, or a sample of the patches
     MeshPriority priority = MeshPriority::least;
 
-    std::optional<planet::MeshFrame> frame{};  ///< nothing: the format's own
-    planet::VerticalDatum datum = planet::VerticalDatum::egm96;
+    std::optional<planet::MeshFrame> frame{};      ///< nothing: the format's own
+    std::optional<planet::VerticalDatum> datum{};  ///< of the raster's heights; nothing: EGM96
     std::optional<std::filesystem::path> store{};  ///< of the planet, instead of the default Earth
 
     std::optional<std::filesystem::path> output{};
     std::optional<std::filesystem::path> picture{};
-    PictureSize picture_size{1600, 1600};
+    std::optional<PictureSize> picture_size{};  ///< nothing: as the mesh is proportioned
     std::string json;
 };
 

@@ -1,6 +1,8 @@
 #include "render/app/mesh_output.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include "planet/elevation/image_io.h"
 #include "planet/error.h"
@@ -11,9 +13,18 @@ namespace render {
 using planet::MeshFormat;
 using planet::MeshFrame;
 
+namespace {
+
+constexpr int least_fitting_height = 400, most_fitting_height = 3200;  ///< pixels
+
+}  // namespace
+
 MeshOutput::MeshOutput(const MeshOptions& options) : options_(options) {
+    if (options.picture) const OutputFile writable("--picture", *options.picture);
     if (!options.output) return;
     format_ = planet::mesh_format(options.output->native());
+    if (options.planet && format_ == MeshFormat::stl)
+        throw planet::Error(planet::Fault::bad_usage, "--output", "an .stl holds no planet", ".glb, .ply or .obj");
     file_ = std::make_unique<OutputFile>("--output", *options.output);
 }
 
@@ -36,7 +47,6 @@ void MeshOutput::write(const planet::SurfaceMesh& mesh, const planet::MeshRefere
             file_->append(block);
         },
         mesh, reference, format_, rounding);
-    file_->commit();
     report.set("output", options_.output->string());
     report.set("output_bytes", bytes);
 }
@@ -44,11 +54,19 @@ void MeshOutput::write(const planet::SurfaceMesh& mesh, const planet::MeshRefere
 void MeshOutput::draw(MeshPicture picture, Report& report) {
     if (!options_.picture) return;
     const auto step = report.step("picture");
-    picture.width = options_.picture_size.width;
-    picture.height = options_.picture_size.height;
+    if (options_.picture_size) {
+        picture.width = options_.picture_size->width;
+        picture.height = options_.picture_size->height;
+    } else if (!picture.planet && !picture.window) {
+        picture.height = fitting_height(picture, least_fitting_height, most_fitting_height);
+    }
     const Context context = Context::create();
     planet::write_image(options_.picture->string(), draw_mesh_picture(picture));
     report.set("picture", options_.picture->string());
+}
+
+void MeshOutput::commit() {
+    if (file_) file_->commit();
 }
 
 void report_mesh(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference, Report& report) {
@@ -66,6 +84,18 @@ void report_mesh(const planet::SurfaceMesh& mesh, const planet::MeshReference& r
 std::string grouped(std::size_t number) {
     std::string text = std::to_string(number);
     for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, " ");
+    return text;
+}
+
+std::string four_digits(double number) {
+    if (!(number > 0)) return "0";
+    if (!std::isfinite(number)) return "infinite";
+    const int exponent = static_cast<int>(std::floor(std::log10(number)));
+    // What exceeds a digit by less than a thousandth of it is taken for the rounding of sums.
+    const double last = std::pow(10.0, exponent - 3), rounded = std::ceil(number / last - 1e-3) * last;
+    if (exponent >= 3) return grouped(static_cast<std::size_t>(std::llround(rounded)));
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", rounded);
     return text;
 }
 

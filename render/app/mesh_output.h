@@ -13,19 +13,23 @@ namespace render {
 /// Opened before any work is done, so that what cannot be written is refused at once.
 class MeshOutput {
   public:
-    /// Throws planet::Error(bad_usage) for an ending that is no format, or a place that cannot be written.
+    /// Throws planet::Error(bad_usage) for an ending that is no format, or a place that cannot be written; for the picture
+    /// too.
     explicit MeshOutput(const MeshOptions& options);
 
-    bool writes_mesh() const { return options_.output.has_value(); }
     /// .ply where none is written: nothing is rounded.
     planet::MeshFormat format() const { return format_; }
     /// What was asked for, or what suits the format. @param planet an ecef mesh by default
     planet::MeshFrame frame(bool planet) const;
 
+    /// The mesh, if one was asked for: to a temporary file until commit().
     void write(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference,
                const planet::MeshRounding& rounding, Report& report);
-    /// If one was asked for. The picture's size is set here.
+    /// The picture, if one was asked for. Its size is set here: without --size as wide as ever, and as high as a plan of
+    /// the whole mesh needs.
     void draw(MeshPicture picture, Report& report);
+    /// Last: a picture that fails leaves no mesh behind.
+    void commit();
 
   private:
     const MeshOptions& options_;
@@ -38,5 +42,7 @@ void report_mesh(const planet::SurfaceMesh& mesh, const planet::MeshReference& r
 
 /// "12 345"
 std::string grouped(std::size_t number);
+/// "19.84": a number >= 0 for people, at most four digits that count, the last one rounded up: "at most" stays true.
+std::string four_digits(double number);
 
 }  // namespace render

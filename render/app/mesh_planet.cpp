@@ -106,9 +106,11 @@ void mesh_planet(const MeshOptions& options, Report& report) {
     const glm::dvec3 corner(store->metadata().ellipsoid.a + 10000);
     const planet::MeshRounding worst = planet::rounding_bound(-corner, corner, reference, output.format());
     const double rounding = std::sqrt(2 * worst.xy * worst.xy + worst.z * worst.z);
-    if (options.max_deviation && *options.max_deviation<rounding&& * options.max_deviation> 0)
-        throw Error(Fault::bad_usage, "--max-deviation", std::to_string(*options.max_deviation) + " m cannot be kept",
-                    "more than the format's rounding of " + std::to_string(rounding) + " m, or a .ply");
+    if (options.max_deviation && *options.max_deviation < rounding)
+        throw Error(
+            Fault::bad_usage, "--max-deviation",
+            four_digits(*options.max_deviation) + " m cannot be kept in a " + options.output->extension().string(),
+            four_digits(rounding) + " m or more, by which it rounds, or a .ply");
 
     planet::PlanetMesh made = make(lattice, options, rounding, report);
     planet::MeshRounding rounded;
@@ -130,10 +132,12 @@ void mesh_planet(const MeshOptions& options, Report& report) {
                  .planet = true,
                  .look_from = planet::normal_from_geodetic(20 * planet::degrees, 15 * planet::degrees)},
                 report);
+    output.commit();
     std::cout << grouped(made.mesh.triangles.size()) << " triangles, " << grouped(made.mesh.vertices.size())
-              << " vertices; deviation at most " << deviation.maximum << " m, rms " << deviation.rms << " m over "
-              << grouped(deviation.samples) << " vertices of the finest surface, which is within "
-              << deviation.resampling << " m of its sources\n";
+              << " vertices; deviation at most " << four_digits(deviation.maximum) << " m, rms "
+              << four_digits(deviation.rms) << " m over " << grouped(deviation.samples)
+              << " vertices of the finest surface, which is within " << four_digits(deviation.resampling)
+              << " m of its sources\n";
 }
 
 }  // namespace render

@@ -1,13 +1,15 @@
 // octaglobe mesh DEM: a raster, within a bound or a budget.
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
-#include "planet/elevation/features.h"
 #include "planet/elevation/raster_io.h"
 #include "planet/error.h"
+#include "planet/patches/decimation.h"
 #include "planet/patches/patch_measure.h"
 #include "render/app/data_path.h"
+#include "render/app/mesh_keep.h"
 #include "render/app/mesh_output.h"
 
 namespace render {
@@ -19,6 +21,9 @@ using planet::Fault;
 /// Sums of doubles may be off by this much where the mesh is exact.
 constexpr double measuring_slack_m = 1e-6;
 
+/// Of a raster and of its patches: 1 GB of heights.
+constexpr std::size_t most_samples = std::size_t{1} << 28;
+
 class RasterMesher {
   public:
     RasterMesher(const MeshOptions& options, Report& report)
@@ -26,16 +31,27 @@ class RasterMesher {
           report_(report),
           output_(options),
           raster_(read()),
-          patches_(*raster_),
+          patches_(*raster_, most_samples),
           frame_(make_frame()) {
         planet::check_frame(frame_.reference(), output_.format());
     }
 
     void run() {
-        planet::PatchTriangulation mesh = planet::coarsest(patches_);
-        if (!options_.keep.empty()) keep(mesh);
-        refine(mesh);
-        extract_within_bound(mesh);
+        if (!options_.keep.empty()) read_features();
+        if (!frame_.affine()) {
+            const auto step = report_.step("place");
+            at_poles_ = samples_at_poles(*raster_);
+            samples_ = planet::place_samples(patches_, frame_);
+        }
+        if (options_.level) {
+            make_level();
+        } else {
+            {
+                const auto step = report_.step("deviations");
+                deviation_ = planet::patch_deviations(patches_);
+            }
+            if (!options_.max_deviation || !make_within_bound()) make_within_budget();
+        }
         finish();
     }
 
@@ -44,136 +60,125 @@ class RasterMesher {
         const auto step = report_.step("read");
         planet::RasterOptions how;
         how.plain = true;
+        how.max_samples = most_samples;
         return std::make_shared<const planet::Raster>(planet::read_raster(options_.source, how));
     }
+
+    planet::VerticalDatum datum() const { return options_.datum.value_or(planet::VerticalDatum::egm96); }
 
     planet::RasterFrame make_frame() {
         const planet::MeshFrame frame = output_.frame(false);
         const bool curved = frame == planet::MeshFrame::enu || frame == planet::MeshFrame::ecef;
         std::shared_ptr<const planet::Geoid> geoid;
-        if (curved && !raster_->plain && options_.datum == planet::VerticalDatum::egm96)
+        if (curved && !raster_->plain && datum() == planet::VerticalDatum::egm96)
             geoid = std::make_shared<const planet::Geoid>(data_file("egm96-15.pgm"));
-        return {raster_, frame, options_.datum, geoid};
+        return {raster_, frame, datum(), geoid};
     }
 
-    void keep(planet::PatchTriangulation& mesh) {
+    void read_features() {
         const auto step = report_.step("keep");
-        const planet::Features features = planet::read_features(options_.keep, *raster_);
-        std::size_t outside = 0;
-        for (const glm::dvec3& p : features.points) outside += !keep_at(mesh, sample_of(p));
-        const auto along = [&](const std::vector<glm::dvec3>& line) {
-            for (std::size_t i = 1; i < line.size(); ++i)
-                outside += keep_between(mesh, sample_of(line[i - 1]), sample_of(line[i]));
-        };
-        for (const auto& line : features.lines) along(line);
-        for (const auto& polygon : features.polygons) {
-            along(polygon.outer);
-            for (const auto& hole : polygon.holes) along(hole);
-        }
-        if (kept_.empty())
+        const KeptSamples found = samples_on(planet::read_features(options_.keep, *raster_), *raster_, patches_);
+        if (found.samples.empty())
             throw Error(Fault::bad_data, options_.keep, "has nothing on the raster",
                         "features within " + raster_->name);
+        kept_ = found.samples;
         report_.set("kept_samples", kept_.size());
-        report_.set("kept_outside", outside);
+        report_.set("kept_outside", found.outside);
     }
 
-    glm::dvec2 sample_of(const glm::dvec3& feature) const {
-        const planet::SampleGrid& g = raster_->grid;
-        const glm::dvec2 d = glm::dvec2(feature) - g.origin;
-        return glm::dvec2(d.x * g.per_row.y - d.y * g.per_row.x, g.per_column.x * d.y - g.per_column.y * d.x) /
-               g.determinant();
-    }
-    // The sample nearest to a place; false where there is none, or a void one.
-    bool keep_at(planet::PatchTriangulation& mesh, const glm::dvec2& at) {
-        const glm::dvec2 nearest = glm::round(at);
-        if (!(nearest.x >= 0 && nearest.y >= 0 && nearest.x < patches_.width() && nearest.y < patches_.height()))
-            return false;
-        const glm::ivec2 sample(nearest);
-        if (std::isnan(patches_.at(sample))) return false;
-        planet::keep_sample(mesh, patches_.lattice(), sample);
-        if (kept_.empty() || kept_.back() != sample) kept_.push_back(sample);
-        return true;
-    }
-    // Every sample that a line passes, within the raster. @return how many of its ends lie outside
-    std::size_t keep_between(planet::PatchTriangulation& mesh, glm::dvec2 a, glm::dvec2 b) {
-        const glm::dvec2 d = b - a;
-        double from = 0, to = 1;  // the part within the raster
-        for (int axis = 0; axis < 2; ++axis) {
-            const double last = (axis == 0 ? patches_.width() : patches_.height()) - 0.5;
-            if (d[axis] == 0) {
-                if (a[axis] < -0.5 || a[axis] > last) return 1;
-                continue;
-            }
-            const double s = (-0.5 - a[axis]) / d[axis], t = (last - a[axis]) / d[axis];
-            from = std::max(from, std::min(s, t));
-            to = std::min(to, std::max(s, t));
-        }
-        if (from > to) return 1;
-        const double length = glm::max(std::abs(d.x), std::abs(d.y)) * (to - from);
-        const auto steps = static_cast<long>(std::ceil(length)) + 1;
-        for (long i = 0; i <= steps; ++i)
-            keep_at(mesh, a + d * (from + (to - from) * static_cast<double>(i) / static_cast<double>(steps)));
-        return from > 0 || to < 1;
+    /// The coarsest mesh that has what it must keep.
+    planet::PatchTriangulation coarsest() const {
+        planet::PatchTriangulation mesh = planet::coarsest(patches_);
+        for (const auto* samples : {&kept_, &at_poles_})
+            for (const glm::ivec2 sample : *samples) planet::keep_sample(mesh, patches_.lattice(), sample);
+        return mesh;
     }
 
-    void refine(planet::PatchTriangulation& mesh) {
-        if (options_.level) {
-            if (*options_.level > mesh.levels())
-                throw Error(Fault::bad_usage, "--level", std::to_string(*options_.level) + " is finer than the raster",
-                            "0 to " + std::to_string(mesh.levels()));
+    void make_level() {
+        planet::PatchTriangulation mesh = coarsest();
+        if (*options_.level > mesh.levels())
+            throw Error(Fault::bad_usage, "--level", std::to_string(*options_.level) + " is finer than the raster",
+                        "0 to " + std::to_string(mesh.levels()));
+        {
             const auto step = report_.step("refine");
             planet::refine_to_level(mesh, *options_.level);
-            return;
         }
-        {
-            const auto step = report_.step("deviations");
-            deviation_ = planet::patch_deviations(patches_);
-        }
-        const auto step = report_.step("refine");
-        if (options_.max_deviation) planet::refine_to_tolerance(mesh, deviation_, tolerance());
-        if (options_.max_triangles && !planet::refine_to_budget(mesh, patches_, deviation_, *options_.max_triangles)) {
-            // The bound or the features need more: the budget decides, from the start.
-            if (!kept_.empty() || !options_.max_deviation) refuse_budget(mesh);
-            mesh = planet::coarsest(patches_);
-            if (!planet::refine_to_budget(mesh, patches_, deviation_, *options_.max_triangles)) refuse_budget(mesh);
-        }
-    }
-
-    double tolerance() const { return std::max(0.0, *options_.max_deviation - patches_.sample_rounding()); }
-
-    [[noreturn]] void refuse_budget(const planet::PatchTriangulation& mesh) const {
-        std::size_t least = 0;
-        mesh.for_each_leaf([&](planet::CellCode leaf) {
-            least += planet::triangles_of_leaf(patches_, patches_.lattice().corners(leaf));
-        });
-        throw Error(Fault::bad_usage, "--max-triangles", std::to_string(*options_.max_triangles) + " is too few",
-                    std::to_string(least) + " or more for this raster" + (kept_.empty() ? "" : " and these features"));
+        extract_and_measure(mesh);
     }
 
     /// Deviations are those of the lattice. A frame that curves and a format that rounds change them; so what is written
     /// is measured, and triangles that are too far off are split until none is.
-    void extract_within_bound(planet::PatchTriangulation& mesh) {
-        if (!frame_.affine()) {
-            const auto step = report_.step("place");
-            samples_ = planet::place_samples(patches_, frame_);
+    /// @return false if that takes more triangles than there may be
+    bool make_within_bound() {
+        planet::PatchTriangulation mesh = coarsest();
+        {
+            const auto step = report_.step("refine");
+            const double tolerance = std::max(0.0, *options_.max_deviation - patches_.sample_rounding());
+            planet::refine_to_tolerance(mesh, deviation_, tolerance);
         }
         for (;;) {
             extract_and_measure(mesh);
-            if (!options_.max_deviation || options_.max_triangles || options_.level) return;
+            if (options_.max_triangles && surface_.triangles.size() > *options_.max_triangles) return false;
             std::vector<planet::CellCode> too_far;
-            for (std::size_t i = 0; i < mesh_.cell.size(); ++i)
-                if (achieved_.by_triangle[i] + patches_.sample_rounding() >
-                    *options_.max_deviation + measuring_slack_m)
-                    too_far.push_back(mesh_.cell[i]);
-            if (too_far.empty()) return;
+            double worst = 0;
+            for (std::size_t i = 0; i < mesh_.cell.size(); ++i) {
+                const double deviation = achieved_.by_triangle[i] + patches_.sample_rounding();
+                if (deviation <= *options_.max_deviation + measuring_slack_m) continue;
+                too_far.push_back(mesh_.cell[i]);
+                worst = std::max(worst, deviation);
+            }
+            if (too_far.empty()) return true;
             bool split = false;
             for (const planet::CellCode cell : too_far)
                 if (mesh.level_of(cell) < mesh.levels()) split |= mesh.split(cell) > 0;
-            if (!split)
-                throw Error(Fault::bad_usage, "--max-deviation",
-                            std::to_string(*options_.max_deviation) + " m cannot be kept in this format",
-                            "more than its rounding of " + std::to_string(rounding_.z) + " m, or a .ply");
+            if (!split) refuse_bound(worst);
         }
+    }
+
+    /// @param possible metres: the deviation of a mesh of all samples
+    [[noreturn]] void refuse_bound(double possible) const {
+        const bool rounds = rounding_.xy > 0 || rounding_.z > 0;
+        throw Error(Fault::bad_usage, "--max-deviation",
+                    four_digits(*options_.max_deviation) + " m cannot be kept" +
+                        (rounds ? " in a " + options_.output->extension().string() + ", which rounds"
+                                : ": samples are kept as floats"),
+                    four_digits(possible) + " m or more" + (rounds ? ", or a .ply" : ""));
+    }
+
+    void make_within_budget() {
+        planet::PatchTriangulation mesh = coarsest();
+        {
+            const auto step = report_.step("refine");
+            const bool enough = options_.priority == MeshPriority::least
+                                    ? planet::refine_to_budget(mesh, patches_, deviation_, *options_.max_triangles)
+                                    : decimate(mesh);
+            if (!enough) refuse_budget(mesh);
+        }
+        extract_and_measure(mesh);
+    }
+
+    /// From all samples down to the budget. @return false, and nothing changes, if what must stay takes more
+    bool decimate(planet::PatchTriangulation& mesh) const {
+        std::vector<glm::ivec2> keep = kept_;
+        keep.insert(keep.end(), at_poles_.begin(), at_poles_.end());
+        planet::PatchTriangulation full = planet::coarsest(patches_);
+        planet::refine_to_level(full, full.levels());
+        const auto priority =
+            options_.priority == MeshPriority::max ? planet::DecimationPriority::max : planet::DecimationPriority::rms;
+        const auto done = planet::decimate(
+            full, patches_, deviation_, {.priority = priority, .max_triangles = *options_.max_triangles, .keep = keep});
+        if (done.triangles > *options_.max_triangles) return false;
+        mesh = std::move(full);
+        return true;
+    }
+
+    [[noreturn]] void refuse_budget(const planet::PatchTriangulation& coarsest) const {
+        std::size_t least = 0;
+        coarsest.for_each_leaf([&](planet::CellCode leaf) {
+            least += planet::triangles_of_leaf(patches_, patches_.lattice().corners(leaf));
+        });
+        throw Error(Fault::bad_usage, "--max-triangles", std::to_string(*options_.max_triangles) + " is too few",
+                    std::to_string(least) + " or more for this raster" + (kept_.empty() ? "" : " and these features"));
     }
 
     void extract_and_measure(const planet::PatchTriangulation& mesh) {
@@ -183,7 +188,13 @@ class RasterMesher {
             surface_.vertices = planet::place_vertices(mesh_, frame_);
             surface_.triangles = mesh_.triangles;
             if (surface_.triangles.empty())
-                throw Error(Fault::bad_data, options_.source, "has no three valid samples side by side");
+                throw Error(Fault::bad_data, options_.source, "no triangle of its mesh has three valid corners",
+                            options_.level           ? "a finer --level"
+                            : options_.max_triangles ? "a larger --max-triangles"
+                                                     : "three valid samples side by side");
+            if (std::ranges::any_of(surface_.vertices, [](const glm::dvec3& p) { return std::isnan(p.x + p.y); }))
+                throw Error(Fault::bad_data, options_.source, "has samples beyond the reach of its CRS",
+                            "--frame source");
             rounding_ = planet::round_to_format(surface_, frame_.reference(), output_.format());
         }
         const auto step = report_.step("measure");
@@ -200,9 +211,11 @@ class RasterMesher {
         output_.write(surface_, frame_.reference(), rounding_, report_);
         fill_report();
         draw();
+        output_.commit();
         std::cout << grouped(surface_.triangles.size()) << " triangles, " << grouped(surface_.vertices.size())
-                  << " vertices; deviation at most " << achieved_.max + patches_.sample_rounding() << " m, rms "
-                  << achieved_.rms << " m over " << grouped(achieved_.samples) << " samples\n";
+                  << " vertices; deviation at most " << four_digits(achieved_.max + patches_.sample_rounding())
+                  << " m, rms " << four_digits(achieved_.rms) << " m over " << grouped(achieved_.samples)
+                  << " samples\n";
     }
 
     /// Rows that run south turn the lattice over.
@@ -230,7 +243,7 @@ class RasterMesher {
 
     void draw() {
         if (!options_.picture) return;
-        const planet::RasterFrame plan(raster_, planet::MeshFrame::source, options_.datum, nullptr);
+        const planet::RasterFrame plan(raster_, planet::MeshFrame::source, datum(), nullptr);
         const std::vector<glm::dvec3> places = planet::place_vertices(mesh_, plan);
         output_.draw({.vertices = places,
                       .triangles = surface_.triangles,
@@ -248,7 +261,7 @@ class RasterMesher {
     planet::RasterFrame frame_;
     planet::DenseQuadtree<float> deviation_;
     planet::PlacedSamples samples_;
-    std::vector<glm::ivec2> kept_;
+    std::vector<glm::ivec2> kept_, at_poles_;
 
     planet::PatchMesh mesh_;
     planet::SurfaceMesh surface_;

@@ -47,6 +47,10 @@ inline constexpr int picture_size_min = 64, picture_size_max = 16384;
 /// The window that shows all triangles that merge and some of what stays around them; nothing if none merges.
 std::optional<MeshWindow> merging_window(const MeshPicture& picture);
 
+/// The height of the picture, between two others, at which its mesh, a plan, fills its width: what is left of it is the
+/// margin and the legend. Throws planet::Error(bad_data) for a mesh without area.
+int fitting_height(const MeshPicture& picture, int least, int most);
+
 /// Draws with the context that is current on this thread, whose depth it reverses (framebuffer.h). The same bytes for the
 /// same mesh. Sides and curve fade out where triangles are only a few pixels large.
 /// Throws planet::Error: bad_usage for a size out of range; bad_data for a mesh without triangles, without area, with an

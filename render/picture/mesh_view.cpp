@@ -58,6 +58,22 @@ bool has_legend(const MeshPicture& picture) {
     return shorter_side(picture) >= legend_from_size;
 }
 
+int fitting_height(const MeshPicture& picture, int least, int most) {
+    Bounds bounds;
+    for (const glm::dvec3& v : picture.vertices) bounds.add(v);
+    const glm::dvec2 size = glm::dvec2(bounds.size()) * picture.metres_per_unit;
+    if (!(size.x > 0 && size.y > 0))
+        throw planet::Error(planet::Fault::bad_data, "a picture of a mesh", "all vertices lie on a line");
+    MeshPicture fitting = picture;
+    for (fitting.height = least; fitting.height < most; ++fitting.height) {
+        const PixelBox plot = plot_of(fitting, shorter_side(fitting) / figure_size);
+        if (static_cast<double>(plot.bottom - plot.top) * size.x >=
+            static_cast<double>(plot.right - plot.left) * size.y)
+            break;
+    }
+    return fitting.height;
+}
+
 MeshView make_mesh_view(const MeshPicture& picture) {
     MeshView view;
     view.planet = picture.planet;
