@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "planet/error.h"
-#include "planet/store/parallel_for.h"
+#include "planet/parallel.h"
 #include "planet/store/tile_sides.h"
 
 namespace planet {
