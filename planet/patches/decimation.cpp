@@ -5,6 +5,7 @@
 
 #include "planet/error.h"
 #include "planet/patches/candidate_queue.h"
+#include "planet/quadtree/merging_domain.h"
 
 namespace planet {
 
@@ -166,7 +167,7 @@ class RmsDecimation {
           raster_(raster),
           count_(count),
           cells_(grid().root_bits(), grid().root_count(), mesh.levels()),
-          merged_(grid().root_bits(), mesh.levels()) {
+          domain_(mesh) {
         const DenseQuadtree<double> squared = patch_squared_deviations(raster);
         for (int level = 0; level < cells_.levels(); ++level) {
             const auto cells = cells_.level(level);
@@ -206,40 +207,16 @@ class RmsDecimation {
         return now;
     }
 
-    // Of removing a vertex with its merging domain in the present mesh, which stays as it is: the spreading steps of
-    // Triangulation::remove, where a cell is gone if it or one above it is marked.
+    // Of removing a vertex with its merging domain in the present mesh.
     Change domain(CellCode cell) {
         ++costed_;
-        domain_.assign(1, cell);
-        if (const CellCode n = grid().neighbor(cell); n != 0) domain_.push_back(n);
-        const int first_level = mesh_.level_of(cell);
         Change change;
-        std::size_t begin = 0;
-        for (int level = first_level; begin < domain_.size(); ++level) {
-            const std::size_t end = domain_.size();
-            for (std::size_t i = begin; i < end; ++i) {
-                const Cell& merged = cells_.at(domain_[i], level);
-                change.squares += merged.squares;
-                change.triangles += merged.triangles;
-            }
-            if (level + 1 == mesh_.levels()) break;
-            for (std::size_t i = begin; i < end; ++i) merged_.insert(domain_[i]);
-            for (std::size_t i = begin; i < end; ++i)
-                for (const CellCode child : {domain_[i] << 1, domain_[i] << 1 | 1}) {
-                    if (!mesh_.is_split(child)) continue;
-                    const CellCode across = grid().neighbor(child);
-                    if (across != 0 && mesh_.is_split(across) && !is_merged(across, level + 1 - first_level))
-                        domain_.push_back(across);
-                }
-            begin = end;
-        }
-        for (const CellCode c : domain_) merged_.drop(c);
+        domain_.visit(cell, [&](CellCode c, int level) {
+            const Cell& merged = cells_.at(c, level);
+            change.squares += merged.squares;
+            change.triangles += merged.triangles;
+        });
         return change;
-    }
-    bool is_merged(CellCode cell, int levels_above) const {
-        for (int k = 1; k <= levels_above; ++k)
-            if (merged_.contains(cell >> k)) return true;
-        return false;
     }
 
     void set_cost(CellCode cell, float cost) {
@@ -317,9 +294,9 @@ class RmsDecimation {
     const PatchRaster& raster_;
     const TriangleCount& count_;
     DenseQuadtree<Cell> cells_;
-    DenseSplitSet merged_;  ///< of domain(); empty between
+    MergingDomain<PatchGrid, DenseSplitSet> domain_;
     CandidateQueue queue_;
-    std::vector<CellCode> domain_, pending_;
+    std::vector<CellCode> pending_;
     double squared_ = 0;
     std::size_t costed_ = 0;
 };

@@ -16,7 +16,8 @@
 // Costs change as the mesh does. Of the vertices that a removed vertex depends on, none gets cheaper: what is left of its
 // domain is dearer than what was removed, or it would have been cheaper than that before. They are costed again when
 // their turn comes by their old cost, and wait if it has grown. Others can get cheaper, where a removal has taken a dear
-// part of their domain: those are costed at once, from the domain's border upwards as long as costs fall.
+// part of their domain: those are costed at once, from the domain's border upwards as long as costs fall. (A cost that fell
+// above one that did not is noticed late: then the order is not strictly cheapest first, though every cost paid is true.)
 
 #include <limits>
 #include <span>
@@ -51,7 +52,7 @@ struct DecimationReport {
 DenseQuadtree<float> saturated(const PatchGrid& grid, const DenseQuadtree<float>& deviation);
 
 /// Cells that mix valid and void samples stay split. What weighs nothing (padding, voids) goes first under `rms`.
-/// Deterministic: equal costs go finest first, then by code. Throws Error(bad_usage) for a max_cost that is no number.
+/// Deterministic: costs are compared as floats, equal ones go finest first, then by code. Throws Error(bad_usage) for a max_cost that is no number.
 /// @param mesh conforming; the full triangulation to reach any other
 /// @param deviation as patch_deviations(raster) gives it
 DecimationReport decimate(PatchTriangulation& mesh, const PatchRaster& raster, const DenseQuadtree<float>& deviation,

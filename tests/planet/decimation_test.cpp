@@ -14,6 +14,7 @@
 #include "planet/patches/candidate_queue.h"
 #include "planet/patches/patch_mesh.h"
 #include "planet/patches/triangle_rows.h"
+#include "planet/quadtree/merging_domain.h"
 
 namespace planet {
 namespace {
@@ -145,6 +146,34 @@ TEST(SquaredDeviation, TheSameBitsOnAnyNumberOfThreads) {
     const auto one = patch_squared_deviations(raster, 1), five = patch_squared_deviations(raster, 5);
     for (int level = 0; level < one.levels(); ++level)
         EXPECT_TRUE(std::ranges::equal(one.level(level), five.level(level)));
+}
+
+// Every vertex of full and of adaptive meshes; domains that close around themselves take 3 x 3 patches.
+TEST(MergingDomain, IsWhatRemovalWouldMerge) {
+    std::vector<PatchTriangulation> meshes;
+    for (const Raster& source : {rough(33, 33, 1), rough(49, 18, 2)}) {
+        const PatchRaster raster(source);
+        meshes.push_back(full(raster));
+        for (unsigned seed = 0; seed < 5; ++seed) meshes.push_back(random_mesh(raster, seed, 100));
+    }
+    meshes.emplace_back(PatchGrid(3, 3), 8);
+    refine_to_level(meshes.back(), 8);
+    std::size_t largest = 0;
+    for (const PatchTriangulation& mesh : meshes) {
+        MergingDomain<PatchGrid, DenseSplitSet> domain(mesh);
+        for_each_split_diamond(mesh, [&](CellCode vertex) {
+            std::vector<CellCode> visited, removed;
+            domain.visit(vertex, [&](CellCode c, int level) {
+                EXPECT_EQ(level, mesh.level_of(c));
+                visited.push_back(c);
+            });
+            PatchTriangulation without = mesh;
+            without.remove(vertex, [&](CellCode c, int) { removed.push_back(c); });
+            EXPECT_EQ(visited, removed);
+            largest = std::max(largest, removed.size());
+        });
+    }
+    EXPECT_EQ(largest, 238u);
 }
 
 // What a vertex costs at most: everything in its merging domain in the full triangulation.
