@@ -34,7 +34,7 @@ RasterFrame::RasterFrame(std::shared_ptr<const Raster> raster, MeshFrame frame, 
             throw Error(Fault::bad_usage, raster_->name,
                         "is on another planet, whose equator has a radius of " +
                             std::to_string(std::lround(raster_->radius_m / 1000)) + " km",
-                        "--frame source");
+                        "--frame source, in a .ply or .obj");
     } else {
         reference_.vertical_datum = name_of(datum);
     }
@@ -80,6 +80,14 @@ void RasterFrame::geodetic(std::span<const glm::dvec2> at, std::span<glm::dvec2>
     if (!raster_->geographic()) raster_->transform->geodetic_from_crs(longitude_latitude);
 }
 
+glm::dvec3 RasterFrame::in_utm(double latitude, double longitude, double height) const try {
+    const Utm utm = utm_from_geodetic({latitude, longitude, {}}, zone_);
+    const double other = utm.north == north_ ? 0 : north_ ? -1e7 : 1e7;  // northings run on across the equator
+    return {utm.easting, utm.northing + other, height};
+} catch (const Error&) {
+    return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+}
+
 void RasterFrame::place(std::span<const glm::dvec2> at, std::span<const double> height, std::span<glm::dvec3> position,
                         std::span<glm::vec3> up) const {
     if (affine_) {
@@ -94,9 +102,7 @@ void RasterFrame::place(std::span<const glm::dvec2> at, std::span<const double> 
         const double latitude = std::clamp(places[i].y, -90.0, 90.0) * degrees;
         const double longitude = places[i].x * degrees;
         if (reference_.frame == MeshFrame::utm) {
-            const Utm utm = utm_from_geodetic({latitude, longitude, {}}, zone_);
-            const double other = utm.north == north_ ? 0 : north_ ? -1e7 : 1e7;  // northings run on across the equator
-            position[i] = {utm.easting, utm.northing + other, height[i]};
+            position[i] = in_utm(latitude, longitude, height[i]);
             if (!up.empty()) up[i] = {0, 0, 1};
             continue;
         }

@@ -34,12 +34,14 @@ class RasterFrame {
     glm::dvec2 metres_per_unit() const;
 
     /// Places samples or points between them. All spans of one length. @param at (column, row) @param height of the
-    /// source, metres @param up empty, or the vertical there
+    /// source, metres @param up empty, or the vertical there. NaN where the frame does not reach: utm far from its zone,
+    /// or a CRS beyond its bounds.
     void place(std::span<const glm::dvec2> at, std::span<const double> height, std::span<glm::dvec3> position,
                std::span<glm::vec3> up) const;
 
   private:
     void set_local_frame();
+    glm::dvec3 in_utm(double latitude, double longitude, double height) const;
     void geodetic(std::span<const glm::dvec2> at, std::span<glm::dvec2> longitude_latitude) const;
 
     std::shared_ptr<const Raster> raster_;

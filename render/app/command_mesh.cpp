@@ -43,11 +43,11 @@ void add_what(CLI::App& command, MeshOptions& o) {
         ->needs("--planet");
     add_value(command, "--patches", "CxR", "Instead: flat square patches, up to 64x64, for --remove",
               [&](Where where, const std::string& text) {
-                  const PictureSize size = parse_size(where, text);
-                  if (std::max(size.width, size.height) > 64)
-                      throw Error(Fault::bad_usage, where, shown(text) + " is too large", "1x1 to 64x64");
-                  o.columns = size.width;
-                  o.rows = size.height;
+                  const auto cross = text.find('x');
+                  if (cross == std::string::npos)
+                      throw Error(Fault::bad_usage, where, shown(text) + " is no grid", "1x1 to 64x64");
+                  o.columns = static_cast<int>(parse_whole(where, text.substr(0, cross), 1, 64));
+                  o.rows = static_cast<int>(parse_whole(where, text.substr(cross + 1), 1, 64));
               });
     add_value(command, "--patch-level", "LEVEL", "Patches of 2^LEVEL + 1 samples a side, 1 to 10 [4]",
               [&](Where where, const std::string& text) {
@@ -127,7 +127,7 @@ void check_files(const MeshOptions& o) {
 }
 
 void check_removal(const MeshOptions& o) {
-    require(o.source.empty(), "--remove", "of a raster", "--patches, or --planet --level");
+    require(o.source.empty(), "--remove", "goes with no raster", "--patches, or --planet --level");
     require(!o.max_deviation && !o.max_triangles && o.keep.empty() && !o.frame && !o.datum && !o.store, "--remove",
             "goes with no bound, budget, features, frame, datum or store",
             "--patches --patch-level, or --planet --level");
@@ -151,7 +151,8 @@ void check(const MeshOptions& o) {
     if (!o.planet) return;
     require(!o.frame || *o.frame == planet::MeshFrame::ecef, "--frame", "the planet has one frame", "ecef");
     require(!o.datum, "--datum", "is for rasters", "--planet without it");
-    require(o.max_triangles.value_or(8) >= 8, "--max-triangles", "is too few for the planet", "8 or more");
+    require(!o.max_triangles || *o.max_triangles >= 8, "--max-triangles",
+            std::to_string(o.max_triangles.value_or(0)) + " is too few for the planet", "8 or more");
     require(!o.level || o.keep.empty(), "--keep", "goes with no level of the planet",
             "--max-deviation or --max-triangles");
 }

@@ -152,6 +152,10 @@ void fill_report(const Domain& domain, int label, Report& report) {
     report.set("cells_visited", domain.visited);
 }
 
+std::string counted(std::size_t number, const char* one, const char* many) {
+    return grouped(number) + " " + (number == 1 ? one : many);
+}
+
 template <class Space>
 void run(const Space& space, const MeshOptions& options, Report& report) {
     MeshOutput output(options);
@@ -194,8 +198,9 @@ void run(const Space& space, const MeshOptions& options, Report& report) {
     report_mesh(surface, reference, report);
     fill_report(domain, label, report);
     std::cout << "vertex " << shown(options.remove) << ": label " << label << " (" << planet::vertex_grid(label)
-              << "), " << grouped(domain.step_of.size()) << " triangles merge in " << domain.merged_by_step.size()
-              << " steps, " << grouped(domain.removed.size()) << " vertices removed\n";
+              << "), " << grouped(domain.step_of.size()) << " triangles merge in "
+              << counted(domain.merged_by_step.size(), "step", "steps") << ", "
+              << counted(domain.removed.size(), "vertex", "vertices") << " removed\n";
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ std::string grouped(std::size_t number) {
 }
 
 std::string four_digits(double number) {
-    if (!(number > 0)) return "0";
+    if (!(number >= 1e-6)) return "0";  // a micrometre: the rounding of sums
     if (!std::isfinite(number)) return "infinite";
     const int exponent = static_cast<int>(std::floor(std::log10(number)));
     // What exceeds a digit by less than a thousandth of it is taken for the rounding of sums.

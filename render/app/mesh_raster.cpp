@@ -40,18 +40,14 @@ class RasterMesher {
         if (!options_.keep.empty()) read_features();
         if (!frame_.affine()) {
             const auto step = report_.step("place");
+            check_reach();
             at_poles_ = samples_at_poles(*raster_);
             samples_ = planet::place_samples(patches_, frame_);
         }
-        if (options_.level) {
+        if (options_.level)
             make_level();
-        } else {
-            {
-                const auto step = report_.step("deviations");
-                deviation_ = planet::patch_deviations(patches_);
-            }
-            if (!options_.max_deviation || !make_within_bound()) make_within_budget();
-        }
+        else if (!options_.max_deviation || !make_within_bound())
+            make_within_budget();
         finish();
     }
 
@@ -73,6 +69,25 @@ class RasterMesher {
         if (curved && !raster_->plain && datum() == planet::VerticalDatum::egm96)
             geoid = std::make_shared<const planet::Geoid>(data_file("egm96-15.pgm"));
         return {raster_, frame, datum(), geoid};
+    }
+
+    static bool is_nowhere(const glm::dvec3& p) { return std::isnan(p.x + p.y); }
+
+    /// Along the raster's border, before anything is made of it.
+    void check_reach() const {
+        std::vector<glm::dvec2> at;
+        for (const double row : {0, raster_->height - 1})
+            for (int column = 0; column < raster_->width; ++column) at.emplace_back(column, row);
+        for (const double column : {0, raster_->width - 1})
+            for (int row = 0; row < raster_->height; ++row) at.emplace_back(column, row);
+        const std::vector<double> heights(at.size());
+        std::vector<glm::dvec3> places(at.size());
+        frame_.place(at, heights, places, {});
+        if (std::ranges::any_of(places, is_nowhere)) refuse_reach();
+    }
+    [[noreturn]] void refuse_reach() const {
+        throw Error(Fault::bad_usage, "--frame", "does not reach all of " + raster_->name,
+                    "another frame, e.g. source");
     }
 
     void read_features() {
@@ -110,11 +125,12 @@ class RasterMesher {
     /// is measured, and triangles that are too far off are split until none is.
     /// @return false if that takes more triangles than there may be
     bool make_within_bound() {
+        const planet::DenseQuadtree<float> deviation = flat_deviations();
         planet::PatchTriangulation mesh = coarsest();
         {
             const auto step = report_.step("refine");
             const double tolerance = std::max(0.0, *options_.max_deviation - patches_.sample_rounding());
-            planet::refine_to_tolerance(mesh, deviation_, tolerance);
+            planet::refine_to_tolerance(mesh, deviation, tolerance);
         }
         for (;;) {
             extract_and_measure(mesh);
@@ -122,10 +138,10 @@ class RasterMesher {
             std::vector<planet::CellCode> too_far;
             double worst = 0;
             for (std::size_t i = 0; i < mesh_.cell.size(); ++i) {
-                const double deviation = achieved_.by_triangle[i] + patches_.sample_rounding();
-                if (deviation <= *options_.max_deviation + measuring_slack_m) continue;
+                const double off = achieved_.by_triangle[i] + patches_.sample_rounding();
+                if (off <= *options_.max_deviation + measuring_slack_m) continue;
                 too_far.push_back(mesh_.cell[i]);
-                worst = std::max(worst, deviation);
+                worst = std::max(worst, off);
             }
             if (too_far.empty()) return true;
             bool split = false;
@@ -146,19 +162,22 @@ class RasterMesher {
     }
 
     void make_within_budget() {
+        const planet::MeshFrame frame = frame_.reference().frame;
+        const bool curved = !frame_.affine() && (frame == planet::MeshFrame::enu || frame == planet::MeshFrame::ecef);
+        const planet::DenseQuadtree<float> deviation = curved ? curved_deviations() : flat_deviations();
         planet::PatchTriangulation mesh = coarsest();
         {
             const auto step = report_.step("refine");
             const bool enough = options_.priority == MeshPriority::least
-                                    ? planet::refine_to_budget(mesh, patches_, deviation_, *options_.max_triangles)
-                                    : decimate(mesh);
+                                    ? planet::refine_to_budget(mesh, patches_, deviation, *options_.max_triangles)
+                                    : decimate(mesh, deviation);
             if (!enough) refuse_budget(mesh);
         }
         extract_and_measure(mesh);
     }
 
     /// From all samples down to the budget. @return false, and nothing changes, if what must stay takes more
-    bool decimate(planet::PatchTriangulation& mesh) const {
+    bool decimate(planet::PatchTriangulation& mesh, const planet::DenseQuadtree<float>& deviation) const {
         std::vector<glm::ivec2> keep = kept_;
         keep.insert(keep.end(), at_poles_.begin(), at_poles_.end());
         planet::PatchTriangulation full = planet::coarsest(patches_);
@@ -166,10 +185,35 @@ class RasterMesher {
         const auto priority =
             options_.priority == MeshPriority::max ? planet::DecimationPriority::max : planet::DecimationPriority::rms;
         const auto done = planet::decimate(
-            full, patches_, deviation_, {.priority = priority, .max_triangles = *options_.max_triangles, .keep = keep});
+            full, patches_, deviation, {.priority = priority, .max_triangles = *options_.max_triangles, .keep = keep});
         if (done.triangles > *options_.max_triangles) return false;
         mesh = std::move(full);
         return true;
+    }
+
+    planet::DenseQuadtree<float> flat_deviations() const {
+        const auto step = report_.step("deviations");
+        return planet::patch_deviations(patches_);
+    }
+
+    /// With the planet's curvature: of heights over the plane that touches it at the raster's middle. They stand for the
+    /// deviations along each sample's vertical, and are the nearer to them the smaller the raster; what is written is
+    /// measured as it is.
+    planet::DenseQuadtree<float> curved_deviations() const {
+        const auto step = report_.step("deviations");
+        const glm::dvec2 middle(0.5 * (raster_->width - 1), 0.5 * (raster_->height - 1));
+        const double ground = 0;
+        glm::dvec3 base;
+        glm::vec3 up;
+        frame_.place({&middle, 1}, {&ground, 1}, {&base, 1}, {&up, 1});
+        planet::Raster over_plane;
+        over_plane.width = patches_.width();
+        over_plane.height = patches_.height();
+        std::vector<float> heights(samples_.position.size());
+        for (std::size_t i = 0; i < heights.size(); ++i)
+            heights[i] = static_cast<float>(glm::dot(samples_.position[i] - base, glm::dvec3(up)));
+        over_plane.samples = std::move(heights);
+        return planet::patch_deviations(planet::PatchRaster(over_plane, most_samples));
     }
 
     [[noreturn]] void refuse_budget(const planet::PatchTriangulation& coarsest) const {
@@ -192,9 +236,7 @@ class RasterMesher {
                             options_.level           ? "a finer --level"
                             : options_.max_triangles ? "a larger --max-triangles"
                                                      : "three valid samples side by side");
-            if (std::ranges::any_of(surface_.vertices, [](const glm::dvec3& p) { return std::isnan(p.x + p.y); }))
-                throw Error(Fault::bad_data, options_.source, "has samples beyond the reach of its CRS",
-                            "--frame source");
+            if (std::ranges::any_of(surface_.vertices, is_nowhere)) refuse_reach();
             rounding_ = planet::round_to_format(surface_, frame_.reference(), output_.format());
         }
         const auto step = report_.step("measure");
@@ -259,7 +301,6 @@ class RasterMesher {
     std::shared_ptr<const planet::Raster> raster_;
     planet::PatchRaster patches_;
     planet::RasterFrame frame_;
-    planet::DenseQuadtree<float> deviation_;
     planet::PlacedSamples samples_;
     std::vector<glm::ivec2> kept_, at_poles_;
 

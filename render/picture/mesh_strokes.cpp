@@ -174,12 +174,14 @@ class Curve {
 void add_marks(std::vector<Stroke>& strokes, const MeshPicture& picture, const MeshView& view) {
     if (picture.marks.empty()) return;
     const float unit = static_cast<float>(view.line_unit);
-    // Dots keep apart where the triangles that merge are small.
+    // Dots keep apart where the triangles that merge are small; those near a planet's limb only look so.
     float room = 4 * first_mark * unit;
     for (std::size_t i = 0; i < picture.step.size(); ++i) {
-        if (picture.step[i] == 0) continue;
-        const Footprint f = footprint(view, picture.triangles[i]);
-        if (f.shown) room = std::min(room, f.height);
+        if (picture.step[i] == 0 || !footprint(view, picture.triangles[i]).shown) continue;
+        const auto& [p, q, r] = picture.triangles[i];
+        const glm::vec3 a = view.places[p], b = view.places[q], c = view.places[r];
+        const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+        if (longest > 0) room = std::min(room, glm::length(glm::cross(b - a, c - a)) / longest);
     }
     const auto dot = [&](std::size_t i, float radius, Color color) {
         const glm::vec3 p = view.place(picture.marks[i]);
