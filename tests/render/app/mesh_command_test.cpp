@@ -233,7 +233,7 @@ TEST_F(MeshCommand, FeaturesStay) {
     EXPECT_LE(report.at("kept_samples"), expected.size() + 6);  // the slanting side of the polygon
     EXPECT_EQ(report.at("kept_outside"), 2);                    // a point, and a line that leaves the raster
     EXPECT_LT(mesh("dem.vrt --max-deviation 200 -o t.ply").at("triangles"), report.at("triangles"));
-    EXPECT_LE(mesh("dem.vrt --max-deviation 20 --max-triangles 300 --keep f.geojson -o t.ply").at("triangles"), 300);
+    EXPECT_LE(mesh("dem.vrt --max-deviation 20 --max-triangles 400 --keep f.geojson -o t.ply").at("triangles"), 400);
 }
 
 TEST_F(MeshCommand, WhatIsNoHeightIsLeftOut) {
@@ -317,8 +317,8 @@ class CornersOfThePlanet : public MeshCommand, public testing::WithParamInterfac
 TEST_P(CornersOfThePlanet, AreLikeAnyPlace) {
     const auto& [name, x, y, step] = GetParam();
     Terrain terrain{.width = 41, .height = 21, .x = x, .y = y, .step_x = step, .step_y = -step};
-    // One height at a pole.
-    terrain.height_m = [](int column, int row) { return 500 + 15.0 * row * std::sin(column); };
+    const int level_row = y < 0 ? terrain.height - 1 : 0;  // a pole has one height
+    terrain.height_m = [=](int column, int row) { return 500 + 15.0 * (row - level_row) * std::sin(column); };
     terrain.write(folder_ / "dem.vrt");
     for (const std::string frame : {"enu", "ecef"}) {
         for (const std::string how : {"--max-deviation 30", "--max-triangles 1000"}) {
@@ -328,7 +328,7 @@ TEST_P(CornersOfThePlanet, AreLikeAnyPlace) {
             const SlowDeviation slow = slow_deviation_in_space(written, reference, terrain);
             EXPECT_EQ(slow.uncovered, 0u) << frame << how;
             // Over a side that is curved in the lattice a sample may lie on its neighbour.
-            EXPECT_NEAR(slow.max, number(report, "deviation_max_m"), 0.3 * slow.max + 1) << frame << how;
+            EXPECT_NEAR(slow.max, number(report, "deviation_max_m"), 0.01 * slow.max + 1e-6) << frame << how;
             EXPECT_TRUE(how == "--max-triangles 1000" || number(report, "deviation_max_m") <= 30 + 1e-6);
             EXPECT_TRUE(how != "--max-triangles 1000" || report.at("triangles") <= 1000);
             EXPECT_EQ(report.at("samples"), 41 * 21);
