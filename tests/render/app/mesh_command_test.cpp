@@ -364,6 +364,16 @@ TEST_F(MeshCommand, AnotherPlanetKeepsItsOwnCoordinates) {
     EXPECT_NEAR(slow_deviation_in_source(read("t.ply"), terrain).max, number(report, "deviation_max_m"), 1e-6);
 }
 
+TEST_F(MeshCommand, HelpNamesEveryOption) {
+    const Outcome outcome = run(folder_.path(), words("mesh --help"));
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.out.find("Example:\n  octaglobe mesh "), std::string::npos);
+    for (const char* option :
+         {"dem FILE", "--planet", "--store", "--patches", "--patch-level", "--max-deviation", "--max-triangles",
+          "--level", "--keep", "--remove", "--output", "--frame", "--datum", "--picture", "--size", "--json"})
+        EXPECT_NE(outcome.out.find(option), std::string::npos) << option;
+}
+
 TEST_F(MeshCommand, SaysFewDigits) {
     hilly_terrain().write(folder_ / "dem.vrt");
     const Json report = mesh("dem.vrt --max-triangles 333 -o t.glb");
