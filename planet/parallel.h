@@ -4,23 +4,40 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 
 namespace planet {
 
-/// Calls work(i) once for every i in [0, pieces), in any order, on `threads` threads (0: one a processor), and waits.
-/// `work` must not throw.
+/// Calls work(i) once for every i below `count`, in any order, on up to `threads` threads (0: one for each processor).
+/// An exception ends the loop early; of several, that of the lowest i met is thrown on.
 template <class Work>
-void parallel_for(std::size_t pieces, unsigned threads, Work&& work) {
+void parallel_for(std::size_t count, unsigned threads, Work&& work) {
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-    std::atomic<std::size_t> next{0};
+    std::atomic<std::size_t> next = 0;
+    std::mutex mutex;
+    std::exception_ptr failure;
+    std::size_t failed = count;
     const auto run = [&] {
-        for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < pieces;) work(i);
+        for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) try {
+                work(i);
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                if (i < failed) {
+                    failed = i;
+                    failure = std::current_exception();
+                }
+                next.store(count, std::memory_order_relaxed);
+            }
     };
-    std::vector<std::jthread> others;
-    for (unsigned t = 1; t < threads && t < pieces; ++t) others.emplace_back(run);
-    run();
+    {
+        std::vector<std::jthread> others;
+        for (std::size_t t = 1; t < std::min<std::size_t>(threads, count); ++t) others.emplace_back(run);
+        run();
+    }
+    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace planet

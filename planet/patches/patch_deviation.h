@@ -2,15 +2,17 @@
 // The deviation of every cell of a raster, exactly: the largest vertical distance, metres, between the triangle through
 // its corners and every sample in it, sides included; not only at the split vertex.
 //
-// Large cells are scanned row by row: the sides of a cell are upright, level or diagonal, so a row of it is an exact span
-// of samples, and the plane over it an arithmetic sequence. Small cells, where a row is a few samples long and most of
-// the time would go, are the lanes of a vector: eight cells at once, eight bisections deep. There the *residuals* (sample
-// minus plane) of a cell become those of its children by one product each,
+// Cells eight bisections above the finest are the lanes of a vector, eight at a time. Of their samples only the
+// *residuals* (sample minus plane) are kept. Downwards those of a cell become its children's by one product each,
 //
 //     r_child(v) = r(v) - r(m) hat(v)          m the split vertex; hat linear, 1 at m and 0 at the child's other corners
 //
-// with the same weights in every cell of a depth, so no plane is ever set up. Heights of whole metres make everything
-// here dyadic, and the deviations exact; else they are rounded up to float after sums in double.
+// with the same weights in every cell of a depth, so no plane is ever set up. Upwards they are tested against the plane of
+// every cell above while they are at hand: r(v) + (own plane - plane above)(v), a linear function. So each sample is
+// loaded once; scanning large cells row by row, one level after the other, took twice as long, waiting for memory.
+//
+// Heights of whole metres make everything here dyadic, and the deviations exact; else they are rounded up to float after
+// sums in double.
 
 #include <limits>
 

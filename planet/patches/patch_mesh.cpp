@@ -1,7 +1,12 @@
 #include "planet/patches/patch_mesh.h"
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "planet/mesh/strip.h"
 #include "planet/mesh/surface_mesh.h"
@@ -18,22 +23,47 @@ constexpr unsigned state_of_half(int half) {
     return S::entry_split | S::exit_split | (half == 1 ? S::split_visited : 0u);
 }
 
-std::size_t count_leaves(const PatchTriangulation& mesh) {
-    std::size_t n = 0;
-    mesh.for_each_leaf([&](CellCode) { ++n; });
-    return n;
+// A place in the lattice as one word, x below y: a midpoint is a sum and a shift. Sums are even and below 2^31.
+using Place = std::uint64_t;
+
+Place place_of(glm::ivec2 p) {
+    return static_cast<Place>(p.y) << 32 | static_cast<Place>(p.x);
+}
+glm::ivec2 lattice_at(Place p) {
+    return {static_cast<std::int32_t>(p), static_cast<std::int32_t>(p >> 32)};
+}
+Place midpoint(Place a, Place b) {
+    return (a + b) >> 1;
 }
 
-// One walk over all leaves, padding and void ones included: the stacks of the strip need them all.
+// Room in large pages, where the system gives them for the asking: first touches of small ones take as long as the walk.
+template <class T>
+void reserve_large(std::vector<T>& array, std::size_t count) {
+    array.reserve(count);
+#ifdef MADV_HUGEPAGE
+    constexpr std::uintptr_t page = 4096;
+    const auto begin = reinterpret_cast<std::uintptr_t>(array.data());
+    const std::uintptr_t first = (begin + page - 1) / page * page, end = (begin + count * sizeof(T)) / page * page;
+    if (end > first) madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+#endif
+}
+
+// One walk over all leaves, padding and void ones included: the stacks of the strip need them all. StripWriter's steps,
+// without a branch a leaf that cannot be foreseen, and with the triangles. What a few leaves give is written together, so
+// that heights, which lie far apart, are read at once.
 class LeafWalk {
   public:
     LeafWalk(const PatchTriangulation& mesh, const PatchRaster& raster)
         : mesh_(mesh), raster_(raster), lattice_(raster.lattice()) {
-        const std::size_t leaves = count_leaves(mesh);
-        strip_.reserve(leaves + 4 * static_cast<std::size_t>(mesh.topology().root_count()));
-        out_.vertices.reserve(leaves / 2 + 4 * static_cast<std::size_t>(mesh.topology().root_count()));
-        out_.triangles.reserve(leaves);
-        out_.cell.reserve(leaves);
+        const auto roots = static_cast<std::size_t>(mesh.topology().root_count());
+        const std::size_t leaves = roots + mesh.split_cells().count();              // a split adds one
+        left_stack_ = std::make_unique_for_overwrite<std::uint32_t[]>(leaves + 3);  // one beyond the top is scratch
+        right_stack_ = std::make_unique_for_overwrite<std::uint32_t[]>(leaves + 3);
+        reserve_large(out_.vertices,
+                      leaves / 2 + static_cast<std::size_t>(lattice_.width() + lattice_.height()));  // Euler
+        reserve_large(out_.triangles, leaves);
+        reserve_large(out_.cell, leaves);
+        reserve_large(out_.strip, leaves / 3 * 5 + 4 * roots);
         below_.assign(static_cast<std::size_t>(lattice_.width()), unknown);
         left_.assign(static_cast<std::size_t>(lattice_.patch_size()) + 1, unknown);
     }
@@ -42,18 +72,21 @@ class LeafWalk {
         const PatchGrid& grid = mesh_.topology();
         for (int row = 0; row < grid.rows(); ++row)
             for (int column = 0; column < grid.columns(); ++column) patch(column, row);
+        flush();
         return std::move(out_);
     }
 
   private:
+    static constexpr std::size_t batch = 1024;  // leaves
+
     void patch(int column, int row) {
         const std::size_t size = static_cast<std::size_t>(lattice_.patch_size());
         south_west_ = glm::ivec2(column, row) * lattice_.patch_size();
         right_.assign(size + 1, unknown);
         above_.assign(size + 1, unknown);
         if (column == 0) left_.assign(size + 1, unknown);
-        if (!out_.strip.empty()) out_.strip.push_back(strip_restart);
-        if (mesh_.levels() == 0 || !mesh_.is_split(mesh_.topology().root_of_patch(column, row, 0)))
+        if (vertices_ != 0) strip_[strip_size_++] = strip_restart;
+        if (!mesh_.is_split(mesh_.topology().root_of_patch(column, row, 0)))
             two_triangles(column, row);
         else
             loop(column, row);
@@ -66,78 +99,142 @@ class LeafWalk {
     void two_triangles(int column, int row) {
         const CellCode root = mesh_.topology().root_of_patch(column, row, 0);
         const LatticeCorners c = lattice_.root_corners(root);
-        const std::uint32_t left = add(c.left), right = add(c.right), apex = add(c.apex),
-                            other = add(lattice_.root_corners(root + 1).apex);
-        out_.triangles.push_back({left, right, apex});
-        out_.triangles.push_back({right, left, other});
-        out_.cell.insert(out_.cell.end(), {root, root + 1});
-        out_.strip.insert(out_.strip.end(), {apex, left, right, other});
+        const std::uint32_t left = add(place_of(c.left)), right = add(place_of(c.right)), apex = add(place_of(c.apex)),
+                            other = add(place_of(lattice_.root_corners(root + 1).apex));
+        for (const std::uint32_t v : {apex, left, right, other}) strip_[strip_size_++] = v;
+        add_triangle({left, right, apex}, root);
+        add_triangle({right, left, other}, root + 1);
     }
 
     void loop(int column, int row) {
-        const std::size_t begin = strip_.indices().size();
-        strip_.end();
         for (int half = 0; half < 2; ++half) {
             const CellCode root = mesh_.topology().root_of_patch(column, row, half);
-            cell(root, 0, lattice_.root_corners(root), state_of_half(half));
+            const LatticeCorners c = lattice_.root_corners(root);
+            if (half == 0) begin(root, c);
+            cell(root, place_of(c.left), place_of(c.right), place_of(c.apex), state_of_half(half));
         }
-        const auto indices = strip_.indices().span().subspan(begin);
-        out_.strip.insert(out_.strip.end(), indices.begin(), indices.end());
     }
 
-    void cell(CellCode code, int level, const LatticeCorners& c, unsigned state) {
-        if (level < mesh_.levels() && mesh_.is_split(code)) {
-            cell(code << 1, level + 1, PatchLattice::child(c, 0), strip_child_states[state][0]);
-            cell(code << 1 | 1, level + 1, PatchLattice::child(c, 1), strip_child_states[state][1]);
-            return;
+    // Starts a strip at the gate of the first leaf.
+    void begin(CellCode code, LatticeCorners c) {
+        unsigned state = state_of_half(0);
+        for (; mesh_.is_split(code); code <<= 1) {
+            c = PatchLattice::child(c, 0);
+            state = strip_child_states[state][0];
         }
-        const auto vertex = [&](std::size_t corner) {
-            return add(corner == 0 ? c.left : corner == 1 ? c.right : c.apex);
-        };
-        std::uint32_t left, right;
-        if (strip_.begun()) {
-            left = strip_.gate_left();
-            right = strip_.gate_right();
+        const glm::ivec2 corner[] = {c.left, c.right, c.apex};
+        const auto gate = strip_first_gate(state);
+        left_top_ = left_stack_.get();
+        right_top_ = right_stack_.get();
+        strip_[strip_size_++] = *left_top_ = add(place_of(corner[gate[0]]));
+        strip_[strip_size_++] = *right_top_ = add(place_of(corner[gate[1]]));
+        last_left_ = false;
+    }
+
+    void cell(CellCode code, Place left, Place right, Place apex, unsigned state) {
+        if (mesh_.is_split(code)) {
+            const Place split = midpoint(left, right);
+            cell(code << 1, left, apex, split, strip_child_states[state][0]);
+            cell(code << 1 | 1, apex, right, split, strip_child_states[state][1]);
         } else {
-            const auto gate = strip_first_gate(state);
-            left = vertex(gate[0]);
-            right = vertex(gate[1]);
-            strip_.begin(left, right);
+            leaf(code, right, apex, state);
         }
-        const StripStep step = strip_steps[state];
-        const std::uint32_t third = strip_.step(step, [&] { return vertex(step.corner); });
-        out_.triangles.push_back({left, right, third});
-        out_.cell.push_back(code);
     }
 
-    // A vertex on the side of a patch may be known from the patch before or below.
-    std::uint32_t add(glm::ivec2 p) {
-        const glm::ivec2 in = p - south_west_;
+    void leaf(CellCode code, Place right, Place apex, unsigned state) {
+        const StripStep step = strip_steps[state];
+        const Place corner = step.corner == 1 ? right : apex;
+        const std::uint32_t gate_left = *left_top_, gate_right = *right_top_;
+        std::uint32_t next = vertices_;
+        if (on_side_of_patch(corner) && !step.pop) next = number_on_side(corner);
+        const bool is_new = !step.pop && next == vertices_;
+        pending_[pending_size_] = corner;
+        pending_size_ += is_new;
+        vertices_ += is_new;
+
+        strip_[strip_size_] = step.left_side ? gate_right : gate_left;  // the pivot, kept only by two steps on one side
+        strip_size_ += step.left_side == last_left_;
+        last_left_ = step.left_side;
+        std::uint32_t* moving = step.left_side ? left_top_ : right_top_;
+        moving[1] = next;  // kept only by a push
+        moving += step.pop ? -1 : 1;
+        left_top_ = step.left_side ? moving : left_top_;
+        right_top_ = step.left_side ? right_top_ : moving;
+        strip_[strip_size_++] = *moving;
+        add_triangle({gate_left, gate_right, *moving}, code);
+    }
+
+    void add_triangle(const std::array<std::uint32_t, 3>& triangle, CellCode code) {
+        triangle_[leaves_] = triangle;
+        cell_[leaves_] = code;
+        if (++leaves_ >= batch) flush();
+    }
+
+    void flush() {
+        for (std::size_t i = 0; i < pending_size_; ++i) {
+            const glm::ivec2 at = lattice_at(pending_[i]);
+            vertex_[i] = {at, static_cast<double>(raster_.at(at))};
+        }
+        const auto append = [](auto& to, const auto& from, std::size_t count) {
+            to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
+        };
+        append(out_.vertices, vertex_, pending_size_);
+        append(out_.triangles, triangle_, leaves_);
+        append(out_.cell, cell_, leaves_);
+        append(out_.strip, strip_, strip_size_);
+        pending_size_ = leaves_ = strip_size_ = 0;
+    }
+
+    bool on_side_of_patch(Place p) const {
+        const auto mask = static_cast<Place>(lattice_.patch_size()) - 1;
+        return (p & mask) == 0 || (p >> 32 & mask) == 0;
+    }
+    std::uint32_t add(Place p) {
+        const std::uint32_t index = on_side_of_patch(p) ? number_on_side(p) : vertices_;
+        if (index == vertices_) {
+            pending_[pending_size_++] = p;
+            ++vertices_;
+        }
+        return index;
+    }
+    // A vertex on the side of a patch may be known from the patch before or below; else it is the next.
+    std::uint32_t number_on_side(Place p) {
+        const glm::ivec2 in = lattice_at(p) - south_west_;
         const int size = lattice_.patch_size();
-        if (in.x > 0 && in.y > 0 && in.x < size && in.y < size) return add_new(p);
-        const auto x = static_cast<std::size_t>(in.x), y = static_cast<std::size_t>(in.y);
+        const auto x = static_cast<std::size_t>(in.x), y = static_cast<std::size_t>(in.y),
+                   x_in_row = x + static_cast<std::size_t>(south_west_.x);
         std::uint32_t index = unknown;
         if (in.x == 0) index = left_[y];
-        if (index == unknown && in.y == 0) index = below_[static_cast<std::size_t>(p.x)];
+        if (index == unknown && in.y == 0) index = below_[x_in_row];
         if (index == unknown && in.x == size) index = right_[y];
         if (index == unknown && in.y == size) index = above_[x];
-        if (index == unknown) index = add_new(p);
+        if (index == unknown) index = vertices_;
         if (in.x == 0) left_[y] = index;
         if (in.x == size) right_[y] = index;
         if (in.y == size) above_[x] = index;
-        if (in.y == 0) below_[static_cast<std::size_t>(p.x)] = index;
+        if (in.y == 0) below_[x_in_row] = index;
         return index;
-    }
-    std::uint32_t add_new(glm::ivec2 p) {
-        out_.vertices.push_back({p, static_cast<double>(raster_.at(p))});
-        return static_cast<std::uint32_t>(out_.vertices.size() - 1);
     }
 
     const PatchTriangulation& mesh_;
     const PatchRaster& raster_;
     const PatchLattice& lattice_;
-    StripWriter strip_;
     PatchMesh out_;
+    std::uint32_t vertices_ = 0;  ///< numbered so far
+
+    // The strip: the ends of the gate on both sides of the curve, topmost last.
+    std::unique_ptr<std::uint32_t[]> left_stack_, right_stack_;
+    std::uint32_t *left_top_ = nullptr, *right_top_ = nullptr;
+    bool last_left_ = false;
+
+    // Not yet in out_. A patch of two leaves has most of all: four vertices, five indices.
+    std::size_t leaves_ = 0, pending_size_ = 0, strip_size_ = 0;
+    std::array<std::array<std::uint32_t, 3>, batch> triangle_;
+    std::array<CellCode, batch> cell_;
+    std::array<Place, 2 * batch + 8> pending_;  ///< places of new vertices
+    std::array<LatticeVertex, 2 * batch + 8> vertex_;
+    std::array<std::uint32_t, 3 * batch + 8> strip_;
+
     glm::ivec2 south_west_{0};
     // Vertices on the sides of the present patch, by distance from its south-western corner; below: of the whole row.
     std::vector<std::uint32_t> left_, right_, above_, below_;

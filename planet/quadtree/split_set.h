@@ -3,7 +3,7 @@
 // pointer, no index of a child or a parent, for a code is its own address.
 //
 //     DenseSplitSet    one bit for every cell that could be split, at its code: 1 bit a cell
-//     SparseSplitSet   a hash of chunks: six levels below a cell, 63 cells in one word: 16 bytes a chunk
+//     SparseSplitSet   a hash of chunks: eight levels from a cell down, 255 cells in four words: 40 bytes a chunk
 //
 // Both keep the cells of a diamond apart, so that asking is one look-up and never needs the neighbour. A cell too deep
 // to be split is never contained, and neither is 0.
@@ -24,15 +24,6 @@ struct Insertion {
     bool is_new;        ///< the cell was not split before
     bool parent_split;  ///< its parent is; false for a root
 };
-
-namespace detail {
-// By local index in a chunk: the cells of its subtree.
-inline constexpr auto subtree_in_chunk = [] {
-    std::array<std::uint64_t, 64> mask{};
-    for (unsigned i = 63; i >= 1; --i) mask[i] = std::uint64_t{1} << i | (i < 32 ? mask[2 * i] | mask[2 * i + 1] : 0);
-    return mask;
-}();
-}  // namespace detail
 
 /// One bit a cell. Fastest where most of the tree is used, or is small.
 class DenseSplitSet {
@@ -85,26 +76,31 @@ class SparseSplitSet {
     bool contains(CellCode cell) const {
         const Place p = place(cell);
         const Chunk& chunk = chunks_[slot(p.root)];
-        return chunk.root == p.root && (chunk.split >> p.index & 1) != 0;
+        return chunk.root == p.root && chunk.contains(p.index);
     }
     Insertion insert(CellCode cell) {
         assert(cell < end_);
         const Place p = place(cell);
         Chunk& chunk = chunk_of(p.root);
-        const std::uint64_t bit = std::uint64_t{1} << p.index, before = chunk.split;
-        chunk.split = before | bit;
-        return {(before & bit) == 0, p.index > 1 ? (before >> (p.index / 2) & 1) != 0 : contains(cell >> 1)};
+        std::uint64_t& word = chunk.split[p.index >> 6];
+        const std::uint64_t bit = std::uint64_t{1} << (p.index & 63), before = word;
+        word |= bit;
+        return {(before & bit) == 0, p.index > 1 ? chunk.contains(p.index >> 1) : contains(cell >> 1)};
     }
-    /// As above; 63 cells at a time.
+    /// As above; whole chunks below the cell's own.
     unsigned drop(CellCode cell) {
         assert(cell < end_);
         const Place p = place(cell);
         Chunk& chunk = chunks_[slot(p.root)];
         if (chunk.root != p.root) return 0;
-        const std::uint64_t gone = chunk.split & detail::subtree_in_chunk[p.index];
-        chunk.split ^= gone;
-        const auto children = static_cast<unsigned>(p.index < 32 ? gone >> (2 * p.index) & 3 : 0);
-        return p.root < first_bottom_ ? children | drop_chunks_below(p, gone) : children;
+        if (p.root < first_bottom_) return drop_with_chunks_below(chunk, p.index);
+        chunk.split[p.index >> 6] &= ~(std::uint64_t{1} << (p.index & 63));
+        if (2 * p.index >= Chunk::cells) return 0;
+        std::uint64_t& word = chunk.split[p.index >> 5];
+        const auto children = static_cast<unsigned>(word >> (2 * p.index & 63) & 3);
+        word &= ~(std::uint64_t{3} << (2 * p.index & 63));
+        if (children != 0) drop_grandchildren(chunk, p.index);
+        return children;
     }
     void fill(CellCode cell);
 
@@ -113,12 +109,15 @@ class SparseSplitSet {
     std::size_t bytes() const { return chunks_.size() * sizeof chunks_[0]; }
 
   private:
-    // Chunks end at the last level, so that a deep tree's many finest cells fill theirs. The topmost chunks, those of
-    // the roots, have what levels remain.
-    static constexpr int chunk_levels = 6;
+    // Eight levels to a chunk measured best of six to nine. Chunks end at the last level, so that a deep tree's many
+    // finest cells fill theirs; the topmost chunks, those of the roots, have what levels remain.
+    static constexpr int chunk_levels = 8;
     struct Chunk {
-        CellCode root = 0;        ///< 0: free
-        std::uint64_t split = 0;  ///< by local index 1..63, a heap: children of i at 2i and 2i + 1
+        static constexpr unsigned cells = 1u << chunk_levels;
+        CellCode root = 0;                              ///< 0: free
+        std::array<std::uint64_t, cells / 64> split{};  ///< by local index from 1, a heap: children of i at 2i, 2i + 1
+
+        bool contains(unsigned index) const { return (split[index >> 6] >> (index & 63) & 1) != 0; }
     };
     struct Place {
         CellCode root;
@@ -130,28 +129,31 @@ class SparseSplitSet {
         return {cell >> depth, 1u << depth | (static_cast<unsigned>(cell) & ((1u << depth) - 1))};
     }
     int levels_of_chunk(CellCode root) const { return root < first_below_top_ ? top_levels_ : chunk_levels; }
-    // Where the chunk is, or the free slot where it would be. Four siblings share a cache line.
+    // Where the chunk is, or the free slot where it would be.
     std::size_t slot(CellCode root) const {
-        std::size_t i = static_cast<std::size_t>(((root >> 2) * 0x9e3779b97f4a7c15u) >> shift_) << 2 | (root & 3);
+        std::size_t i = static_cast<std::size_t>((root * 0x9e3779b97f4a7c15u) >> shift_);
         while (chunks_[i].root != root && chunks_[i].root != 0) i = (i + 1) & (chunks_.size() - 1);
         return i;
     }
     Chunk& chunk_of(CellCode root) {  // added if need be
-        const std::size_t i = slot(root);
-        return chunks_[i].root == root ? chunks_[i] : add_chunk(root, i);
+        if (chunks_[recent_].root == root) return chunks_[recent_];
+        recent_ = slot(root);
+        return chunks_[recent_].root == root ? chunks_[recent_] : add_chunk(root);
     }
-    Chunk& add_chunk(CellCode root, std::size_t slot);
+    Chunk& add_chunk(CellCode root);  // at recent_
     void rehash();
-    unsigned drop_chunk(CellCode root);                       // @return whether its root was split
-    unsigned drop_chunks_below(Place p, std::uint64_t gone);  // @return which of p's children, if they root chunks
+    static void drop_grandchildren(Chunk& chunk, unsigned index);
+    unsigned drop_with_chunks_below(Chunk& chunk, unsigned index);  // @return as drop()
+    unsigned drop_chunk(CellCode root);                             // @return 1 if its root was split
 
     int levels_;
-    int top_levels_;            ///< of the chunks of the roots, 1..6
+    int top_levels_;            ///< of the chunks of the roots, 1..chunk_levels
     CellCode first_below_top_;  ///< least code below them
     CellCode first_bottom_;     ///< least root of the chunks at the last level
     CellCode end_;              ///< one past the last code that could be split
     int shift_ = 0;
     std::size_t used_ = 0;
+    std::size_t recent_ = 0;  ///< slot of the chunk of the last insertion: the next one mostly goes there too
     std::array<std::uint8_t, 65> depth_of_width_{};  ///< levels below the chunk's root, by the width of the code
     std::vector<Chunk> chunks_;                      ///< open addressing; a power of two
 };

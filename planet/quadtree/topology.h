@@ -74,11 +74,14 @@ class PatchGrid {
 
     constexpr CellCode neighbor(CellCode cell) const {
         const CellCode inside = neighbor_within_root(cell, root_bits_);
-        return inside != 0 ? inside : neighbor_across_border(cell);
+        if (inside != 0) [[likely]]
+            return inside;
+        return neighbor_across_border(cell);
     }
 
   private:
-    constexpr CellCode neighbor_across_border(CellCode cell) const {
+    // Rare, and out of line: inlined everywhere it nearly doubles the time of the ten instructions of the other way.
+    [[gnu::noinline]] constexpr CellCode neighbor_across_border(CellCode cell) const {
         const int d = bisection_level_of(cell, root_bits_);
         if ((d & 1) == 0) return cell ^ ((CellCode{2} << d) - 1);  // the diagonal: the other half, path reversed
         // A side of the patch: half 0 lies at the west (top path bit 0) and the north (1), half 1 at the east and the

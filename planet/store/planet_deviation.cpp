@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "planet/mesh/deviation.h"
-#include "planet/store/parallel_for.h"
+#include "planet/parallel.h"
 #include "planet/store/planet_mesh.h"
 #include "planet/store/tile_sides.h"
 

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "planet/error.h"
-#include "planet/store/parallel_for.h"
+#include "planet/parallel.h"
 #include "planet/store/tile_sides.h"
 
 namespace planet {
@@ -114,6 +115,49 @@ bool PlanetLattice::exists(LocationCode cell) {
     const auto [root, local] = cell_in_tile(cell);
     const LatticeTile* holder = tile(root);
     return holder && holder->exists(local);
+}
+
+LocationCode PlanetLattice::finest_cell(const glm::dvec3& normal) {
+    const LocationCode path = cell_at(normal, store_->metadata().finest_level);
+    int level = 0;
+    while (level < path.bisection_level() && exists(path.ancestor(level))) ++level;
+    return path.ancestor(level);
+}
+
+struct PlanetLattice::Nearest {
+    glm::dvec3 normal;
+    double distance;  // chord on the unit sphere
+    std::optional<LocationCode> split;
+};
+
+// No vertex in a cell is farther from its split vertex than the farthest corner: what lies too far away is left out.
+void PlanetLattice::search(LocationCode cell, const Corners& c, Nearest& nearest) {
+    const glm::dvec3 m = split_vertex(c);
+    const double d = glm::distance(m, nearest.normal);
+    const double reach = std::max({glm::distance(m, c.left), glm::distance(m, c.right), glm::distance(m, c.apex)});
+    if (d - reach > nearest.distance || !exists(cell)) return;
+    if (d < nearest.distance) {
+        nearest.distance = d;
+        nearest.split = cell;
+    }
+    // The child on the direction's side first.
+    const int first = glm::distance(c.left, nearest.normal) <= glm::distance(c.right, nearest.normal) ? 0 : 1;
+    for (const int i : {first, 1 - first}) search(cell.child(i), child_corners(c, m, i), nearest);
+}
+
+std::optional<LocationCode> PlanetLattice::nearest_split(const glm::dvec3& normal) {
+    Nearest nearest{normal, std::numeric_limits<double>::infinity(), std::nullopt};
+    for (int face = 0; face < face_count; ++face) {
+        const Corners c = face_corners(face);
+        for (const glm::dvec3& corner : {c.left, c.right, c.apex})
+            nearest.distance = std::min(nearest.distance, glm::distance(corner, normal));
+    }
+    const int first = cell_at(normal, 0).face();
+    for (int i = 0; i < face_count; ++i) {
+        const int face = first ^ i;
+        search(LocationCode::face_root(face), face_corners(face), nearest);
+    }
+    return nearest.split;
 }
 
 float PlanetLattice::own_deviation(LatticeTile& tile, unsigned local) {

@@ -10,6 +10,7 @@
 #include <bitset>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -78,6 +79,10 @@ class PlanetLattice {
 
     /// Whether the cell's split vertex is in the store.
     bool exists(LocationCode cell);
+    /// The finest cell that holds a direction.
+    LocationCode finest_cell(const glm::dvec3& normal);
+    /// A cell that the finest vertex nearest to a unit normal splits; std::nullopt for a corner of the octahedron.
+    std::optional<LocationCode> nearest_split(const glm::dvec3& normal);
     /// The cell's own deviation, exactly: over every finest vertex in it, sides included; certified_deviation(). Metres.
     float own_deviation(LatticeTile& tile, unsigned local);
 
@@ -87,6 +92,8 @@ class PlanetLattice {
     std::size_t tile_count() const { return tiles_.size(); }
 
   private:
+    struct Nearest;
+    void search(LocationCode cell, const Corners& corners, Nearest& nearest);
     std::unique_ptr<LatticeTile> read_with_own_deviations(LocationCode root) const;
     float settle(const LatticeTile& tile, unsigned local);
     void raise_below(const LatticeTile& tile, unsigned first, unsigned end, const CellPlane& plane, float& worst);

@@ -88,32 +88,15 @@ class Refinement {
         }
     }
 
-    // A vertex of the finest cells around a direction may be nearer than the corners of the one that holds it. Across its
-    // split side and beyond its legs there is one more each: all others are farther away.
+    // The nearest vertex may belong to a cell beside the one that holds the direction.
     void keep(const glm::dvec3& direction) {
-        if (!std::isfinite(glm::dot(direction, direction)) || !(glm::dot(direction, direction) > 0))
+        const double square = glm::dot(direction, direction);
+        if (!std::isfinite(square) || !(square > 0))
             throw Error(Fault::bad_usage, "mesh of the planet", "what is to be kept is not a direction");
-        const glm::dvec3 n = glm::normalize(direction);
-        const LocationCode path = cell_at(n, lattice_.store().metadata().finest_level);
-        int level = 0;
-        while (level < path.bisection_level() && lattice_.exists(path.ancestor(level))) ++level;
-        const LocationCode cell = path.ancestor(level);
-        if (level > 0) split(cell.parent().bits());
-        const auto distance = [&](const glm::dvec3& v) { return glm::dot(v - n, v - n); };
-        const Corners c = corners(cell);
-        double nearest = std::min({distance(c.left), distance(c.right), distance(c.apex)});
-        LocationCode chosen = cell;  // splits the vertex that is nearest; the cell itself: none has to be split
-        const auto propose = [&](LocationCode splits) {
-            if (!lattice_.exists(splits)) return;
-            const double d = distance(split_vertex(corners(splits)));
-            if (d >= nearest) return;
-            nearest = d;
-            chosen = splits;
-        };
-        propose(neighbor(cell, Side::left_leg));
-        propose(neighbor(cell, Side::right_leg));
-        if (level > 0) propose(neighbor(cell).parent());
-        if (chosen != cell) split(chosen.bits());
+        const glm::dvec3 n = direction / std::sqrt(square);
+        const LocationCode finest = lattice_.finest_cell(n);
+        if (finest.bisection_level() > 0) split(finest.parent().bits());
+        if (const std::optional<LocationCode> cell = lattice_.nearest_split(n)) split(cell->bits());
     }
 
     void consider_fresh() {

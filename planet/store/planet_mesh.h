@@ -40,7 +40,7 @@ struct PlanetMesh {
 /// Throws Error(bad_usage) for an option out of range, or if keep alone takes more triangles than allowed.
 PlanetMesh planet_mesh(PlanetLattice& lattice, const PlanetMeshOptions& options);
 
-inline constexpr int finest_uniform_level = 26;
+inline constexpr int finest_uniform_level = 22;  // 33 million triangles, 2 GB
 
 /// All 8 * 2^level cells of one bisection level. Vertices lie on the finest surface: on those of the store where it has
 /// them, and where it ends in the planes of its finest cells. Memory: about 60 bytes a triangle.

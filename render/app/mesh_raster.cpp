@@ -6,6 +6,7 @@
 
 #include "planet/elevation/raster_io.h"
 #include "planet/error.h"
+#include "planet/patches/decimation.h"
 #include "planet/patches/patch_measure.h"
 #include "render/app/data_path.h"
 #include "render/app/mesh_keep.h"
@@ -167,9 +168,27 @@ class RasterMesher {
         planet::PatchTriangulation mesh = coarsest();
         {
             const auto step = report_.step("refine");
-            if (!planet::refine_to_budget(mesh, patches_, deviation, *options_.max_triangles)) refuse_budget(mesh);
+            const bool enough = options_.priority == MeshPriority::least
+                                    ? planet::refine_to_budget(mesh, patches_, deviation, *options_.max_triangles)
+                                    : decimate(mesh, deviation);
+            if (!enough) refuse_budget(mesh);
         }
         extract_and_measure(mesh);
+    }
+
+    /// From all samples down to the budget. @return false, and nothing changes, if what must stay takes more
+    bool decimate(planet::PatchTriangulation& mesh, const planet::DenseQuadtree<float>& deviation) const {
+        std::vector<glm::ivec2> keep = kept_;
+        keep.insert(keep.end(), at_poles_.begin(), at_poles_.end());
+        planet::PatchTriangulation full = planet::coarsest(patches_);
+        planet::refine_to_level(full, full.levels());
+        const auto priority =
+            options_.priority == MeshPriority::max ? planet::DecimationPriority::max : planet::DecimationPriority::rms;
+        const auto done = planet::decimate(
+            full, patches_, deviation, {.priority = priority, .max_triangles = *options_.max_triangles, .keep = keep});
+        if (done.triangles > *options_.max_triangles) return false;
+        mesh = std::move(full);
+        return true;
     }
 
     planet::DenseQuadtree<float> flat_deviations() const {

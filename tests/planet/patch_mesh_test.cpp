@@ -7,7 +7,7 @@
 #include <set>
 
 #include "planet/error.h"
-#include "planet/mesh/surface_mesh.h"
+#include "planet/mesh/surface_check.h"
 #include "planet/patches/patch_measure.h"
 
 namespace planet {
@@ -130,24 +130,16 @@ void expect_conforming(const PatchMesh& mesh, const PatchRaster& raster, bool wh
     }
 }
 
-void expect_strip_draws(const PatchMesh& mesh) {
-    std::size_t next = 0, start = 0;
-    for (std::size_t i = 0; i < mesh.strip.size(); ++i) {
-        if (mesh.strip[i] == strip_restart) {
-            start = i + 1;
-            continue;
-        }
-        if (i < start + 2) continue;
-        std::array<std::uint32_t, 3> t{mesh.strip[i - 2], mesh.strip[i - 1], mesh.strip[i]};
-        if (t[0] == t[1] || t[1] == t[2] || t[0] == t[2]) continue;
-        if ((i - start) % 2 == 1) std::swap(t[0], t[1]);
-        ASSERT_LT(next, mesh.triangles.size());
-        auto want = mesh.triangles[next++];
-        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-        std::rotate(want.begin(), std::min_element(want.begin(), want.end()), want.end());
-        ASSERT_EQ(t, want) << "triangle " << next - 1;
-    }
-    EXPECT_EQ(next, mesh.triangles.size());
+// As a surface of its own: sides, winding, strips.
+void expect_sound(const PatchMesh& mesh) {
+    SurfaceMesh surface;
+    for (const LatticeVertex& v : mesh.vertices) surface.vertices.emplace_back(glm::dvec2(v.at), v.height);
+    surface.triangles = mesh.triangles;
+    surface.strip = mesh.strip;
+    EXPECT_EQ(check(surface, MeshFrame::source).summary(), "sound");
+    turn_strips(surface.strip);
+    for (auto& t : surface.triangles) std::swap(t[0], t[1]);
+    EXPECT_TRUE(check(surface, MeshFrame::source).strips_match);
 }
 
 double worst_deviation(const PatchMesh& mesh, const PatchRaster& raster) {
@@ -170,7 +162,7 @@ TEST(PatchMesh, KeepsTheBoundAtEverySampleOfEverySize) {
             ASSERT_FALSE(mesh.check());
             const PatchMesh out = extract(mesh, raster);
             expect_conforming(out, raster, true);
-            expect_strip_draws(out);
+            expect_sound(out);
             EXPECT_LE(worst_deviation(out, raster), tolerance + 1e-9);
         }
 }
@@ -223,7 +215,7 @@ TEST(PatchMesh, HolesAreLeftOutAndNothingElse) {
         refine_to_tolerance(mesh, deviation, 15);
         const PatchMesh out = extract(mesh, raster);
         expect_conforming(out, raster, false);
-        expect_strip_draws(out);
+        expect_sound(out);
         EXPECT_LE(worst_deviation(out, raster), 15 + 1e-9);
         // No triangle over a void sample, and none missing where all three corners of a unit cell are valid.
         std::set<std::pair<int, int>> covered;
@@ -246,7 +238,7 @@ TEST(PatchMesh, UniformLevelsAndKeptSamples) {
         const PatchMesh out = extract(mesh, raster);
         EXPECT_EQ(out.triangles.size(), 4u << level);
         expect_conforming(out, raster, true);
-        expect_strip_draws(out);
+        expect_sound(out);
         EXPECT_LE(static_cast<double>(out.strip.size()), 5.05 / 3 * static_cast<double>(out.triangles.size()) + 12);
     }
     PatchTriangulation mesh = coarsest(raster);

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "planet/quadtree/dense_quadtree.h"
 #include "planet/quadtree/patch_lattice.h"
 #include "planet/quadtree/triangulation.h"
 
@@ -134,6 +138,67 @@ TEST(SierpinskiBitree, LevelThreeIsNotFourCopiesOfLevelOne) {
     EXPECT_EQ(tree.at(3, {0, 0}).type, tree.at(1, {0, 0}).type);
     EXPECT_NE(tree.at(3, {0, 2}).type, tree.at(1, {0, 0}).type);
     EXPECT_EQ(tree.at(5, {0, 4}).type, tree.at(3, {0, 0}).type);
+}
+
+/// A circle over a patch of 2^d + 1 samples a side, refined to its samples.
+Triangulation<PatchGrid, SparseSplitSet> circle(int d) {
+    Triangulation<PatchGrid, SparseSplitSet> t(PatchGrid(1, 1), 2 * d);
+    const PatchLattice lattice(t.topology(), d);
+    for (int k = 0; k < 8 << d; ++k) {
+        const double angle = 2 * std::numbers::pi * k / (8 << d);
+        const glm::ivec2 at = glm::dvec2(0.5 + 0.4 * std::cos(angle), 0.5 + 0.4 * std::sin(angle)) * std::ldexp(1, d);
+        if (const auto cell = lattice.cell_split_at(at | 1)) t.split(*cell);
+    }
+    return t;
+}
+
+double megabytes(double bytes) {
+    return bytes / 1e6;
+}
+double megabytes(const SparseSplitSet& set) {
+    return megabytes(static_cast<double>(set.bytes()));
+}
+/// A binary tree of nodes with two 32-bit links, leaves included: an RTIN, whose labels give the rest.
+double linked_tree_megabytes(std::size_t split_cells) {
+    return megabytes(8. * static_cast<double>(2 * split_cells + 2));
+}
+
+// The table of planet/README.md: every triangle of a patch of 1,025 samples a side, a circle on it, and a circle on one
+// of 65,537.
+TEST(Memory, OfEachStructureIsAsStated) {
+    constexpr int d = 10, deep_d = 16;
+    const auto triangles = [](int levels) { return std::ldexp(4, levels) - 2; };
+    const auto adaptive = circle(d), deep = circle(deep_d);
+    EXPECT_EQ(adaptive.split_cells().count(), 17'126u);
+    EXPECT_EQ(deep.split_cells().count(), 1'119'998u);
+
+    const SierpinskiBitree tree(d);
+    double kept = 0;
+    for (int level = 0; level <= tree.last_level(); ++level) kept += tree.rows(level) * tree.columns(level);
+    EXPECT_EQ(kept, triangles(2 * d));
+    EXPECT_EQ(SierpinskiBitree::bytes_of_triangle, 13.125);
+    EXPECT_EQ(sizeof(SierpinskiBitree::Triangle), 14u);  // 7 bits of it unused
+    EXPECT_NEAR(megabytes(kept * SierpinskiBitree::bytes_of_triangle), 55.05, 0.005);
+    EXPECT_NEAR(megabytes(triangles(2 * deep_d) * SierpinskiBitree::bytes_of_triangle), 225'500, 50);
+
+    EXPECT_NEAR(linked_tree_megabytes((std::size_t{2} << (2 * d)) - 2), 33.55, 0.005);
+    EXPECT_NEAR(linked_tree_megabytes(adaptive.split_cells().count()), 0.274, 5e-4);
+    EXPECT_NEAR(linked_tree_megabytes(deep.split_cells().count()), 17.92, 0.005);
+
+    const DenseQuadtree<float> deviations(1, 2, 2 * d);
+    EXPECT_NEAR(megabytes(static_cast<double>(deviations.bytes())), 8.39, 0.005);
+    EXPECT_NEAR(megabytes(4 * (triangles(2 * deep_d) / 2 - 1)), 34'360, 5);
+
+    const DenseSplitSet dense(1, 2 * d);
+    EXPECT_NEAR(megabytes(static_cast<double>(dense.bytes())), 0.262, 5e-4);
+    EXPECT_NEAR(static_cast<double>(dense.bytes()) / triangles(2 * d), 0.0625, 1e-6);
+    EXPECT_NEAR(megabytes(std::ldexp(1, 2 * deep_d + 1) / 8), 1'074, 1);
+
+    SparseSplitSet full(1, 2 * d);
+    for (const CellCode root : {2u, 3u}) full.fill(root);
+    EXPECT_NEAR(megabytes(full), 1.31, 0.005);
+    EXPECT_NEAR(megabytes(adaptive.split_cells()), 0.082, 5e-4);
+    EXPECT_NEAR(megabytes(deep.split_cells()), 5.24, 0.005);
 }
 
 }  // namespace

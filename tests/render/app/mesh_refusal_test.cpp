@@ -159,7 +159,7 @@ constexpr Refusal kinds[] = {
     {"--max-deviation 9 -o t.ply", 2, "mesh: nothing to mesh", "a raster, or --planet, or --patches"},
     {"dem.vrt --planet --level 3 -o t.ply", 2, "mesh: more than one thing to mesh", "a raster, or --planet"},
     {"dem.vrt --store x --level 3 -o t.ply", 2, "mesh: --store requires --planet", "--help"},
-    {"--planet --level 27 -o t.ply", 2, "--level: 27 is too fine for a whole planet", "0 to 26"},
+    {"--planet --level 27 -o t.ply", 2, "--level: 27 is too fine for a whole planet", "0 to 22"},
     {"--planet --level 3 -o t.stl", 2, "--output: an .stl holds no planet", ".glb, .ply or .obj"},
     {"--planet --level 3 --frame enu -o t.glb", 2, "--frame: the planet has one frame", "ecef"},
     {"--planet --level 3 --datum egm96 -o t.glb", 2, "--datum: is for rasters", "--planet without it"},
