@@ -35,7 +35,7 @@ std::filesystem::path picture_name(Where where, const std::string& text) {
 }
 
 void add_what(CLI::App& command, MeshOptions& o) {
-    add_value(command, "dem", "FILE", "A raster of heights, in any format and CRS that GDAL reads; a heightmap too",
+    add_value(command, "dem", "FILE", "A raster of heights in any format and CRS that GDAL reads, or a heightmap",
               [&](Where where, const std::string& text) { o.source = file_name(where, text); });
     command.add_flag("--planet", o.planet, "Instead: the whole planet, closed");
     add_value(command, "--store", "FILE", "A baked store instead of the default Earth",
@@ -57,18 +57,16 @@ void add_what(CLI::App& command, MeshOptions& o) {
 }
 
 void add_how_much(CLI::App& command, MeshOptions& o) {
-    add_value(command, "--max-deviation", "METRES",
-              "The bound: no sample is farther from the triangles, along the vertical",
+    add_value(command, "--max-deviation", "METRES", "The bound: no sample is farther from the mesh, along its vertical",
               [&](Where where, const std::string& text) {
                   o.max_deviation = parse_distance(where, text, {0, largest_deviation_m});
               });
-    add_value(command, "--max-triangles", "COUNT",
-              "The budget: never more, with the least deviation; goes before the bound",
+    add_value(command, "--max-triangles", "COUNT", "The budget: never more; where a bound takes more, it gives way",
               [&](Where where, const std::string& text) {
                   o.max_triangles = static_cast<std::size_t>(parse_whole(where, text, 2, 4'000'000'000));
               });
     add_value(
-        command, "--level", "LEVEL", "Instead: the uniform mesh of a bisection level; 2 are twice as fine",
+        command, "--level", "LEVEL", "Instead: the uniform mesh of a bisection level; two more halve its sides",
         [&](Where where, const std::string& text) { o.level = static_cast<int>(parse_whole(where, text, 0, 56)); });
     add_value(
         command, "--priority", "WHICH",
@@ -77,11 +75,11 @@ void add_how_much(CLI::App& command, MeshOptions& o) {
             o.priority = static_cast<MeshPriority>(parse_choice(where, text, {"least", "max", "rms"}));
         })
         ->needs("--max-triangles");
-    add_value(command, "--keep", "FILE", "Points, lines and outlines whose samples must stay: GeoJSON, GeoPackage, ...",
+    add_value(command, "--keep", "FILE", "Points, lines, outlines whose samples must stay: GeoJSON, GeoPackage, ...",
               [&](Where where, const std::string& text) { o.keep = file_name(where, text); });
     add_value(command, "--remove", "A,B",
-              "Remove a vertex from the finest mesh, with all that depend on it: sample X,Y of --patches, or the "
-              "one nearest to LAT,LON of --planet --level 1 to 22",
+              "Remove a vertex of the finest mesh with all that depend on it: sample X,Y of\n"
+              "--patches, or the vertex nearest to LAT,LON with --planet --level 1 to 22",
               [&](Where where, const std::string& text) { o.remove = file_name(where, text); });
 }
 
@@ -89,8 +87,8 @@ void add_where_to(CLI::App& command, MeshOptions& o) {
     add_value(command, "-o,--output", "FILE", "The mesh: .glb, .ply, .obj or .stl",
               [&](Where where, const std::string& text) { o.output = file_name(where, text); });
     add_value(command, "--frame", "FRAME",
-              "Of the coordinates: source (the raster's CRS), utm, enu (metres east, north, up of its middle) or ecef "
-              "[.ply, .obj: source; .glb, .stl: enu; the planet has ecef only]",
+              "source (the raster's CRS), utm, enu (metres east, north and up of the raster's\n"
+              "middle) or ecef [.ply, .obj: source; .glb, .stl: enu; the planet: ecef]",
               [&](Where where, const std::string& text) {
                   o.frame = static_cast<planet::MeshFrame>(parse_choice(where, text, {"source", "utm", "enu", "ecef"}));
               });

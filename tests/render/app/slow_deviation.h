@@ -25,7 +25,9 @@ struct Crossing {
 inline Crossing crossing(const std::array<glm::dvec3, 3>& t, const glm::dvec3& foot, const glm::dvec3& up) {
     const glm::dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
     const double across = glm::dot(up, n);
-    if (std::abs(across) < 1e-12 * glm::length(n) || glm::length(n) == 0) return {};
+    // Beside a pole triangles have two corners at one place.
+    const double longest = std::max({glm::distance(t[0], t[1]), glm::distance(t[1], t[2]), glm::distance(t[2], t[0])});
+    if (glm::length(n) < 1e-9 * longest * longest) return {};
     const double height = glm::dot(t[0] - foot, n) / across;
     const glm::dvec3 p = foot + height * up;
     const double area = glm::dot(n, n);
