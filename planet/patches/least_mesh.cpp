@@ -1,6 +1,10 @@
 #include "planet/patches/least_mesh.h"
 
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <queue>
+#include <span>
 
 #include "planet/patches/clip.h"
 
@@ -10,26 +14,59 @@ PatchTriangulation coarsest(const PatchRaster& raster) {
     return PatchTriangulation(raster.grid(), raster.lattice().bisection_levels());
 }
 
+namespace {
+
+// The largest float up to v: a float exceeds v if and only if it exceeds that.
+float rounded_down(double v) {
+    const auto f = static_cast<float>(v);
+    return static_cast<double>(f) > v ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+
+// Calls on_index(i) for the values above a bound, in order. None is negative, so that they compare as integers do, which
+// vector units take in one step.
+template <class OnIndex>
+void for_each_above(std::span<const float> values, float bound, OnIndex&& on_index) {
+    constexpr std::size_t block = 16;
+    for (std::size_t first = 0; first < values.size(); first += block) {
+        const std::size_t end = std::min(first + block, values.size());
+        std::int32_t largest = 0;
+        for (std::size_t i = first; i < end; ++i) largest = std::max(largest, std::bit_cast<std::int32_t>(values[i]));
+        if (!(std::bit_cast<float>(largest) > bound)) continue;
+        for (std::size_t i = first; i < end; ++i)
+            if (values[i] > bound) on_index(i);
+    }
+}
+
+}  // namespace
+
+// Level by level, so that deviations, which are more than a cache holds, are read from first to last. What closure splits
+// on coarser levels leaves cells there that the scan has passed: these are followed at once.
 void refine_to_tolerance(PatchTriangulation& mesh, const DenseQuadtree<float>& deviation, double tolerance) {
-    std::vector<CellCode> pending;
-    const int levels = mesh.levels();
-    const auto too_far = [&](CellCode cell) {
-        const int level = mesh.level_of(cell);
-        return level<levels&& static_cast<double>(deviation.at(cell, level))> tolerance;
-    };
-    mesh.for_each_leaf([&](CellCode leaf) {
-        if (too_far(leaf)) pending.push_back(leaf);
-    });
-    const auto add_children = [&](CellCode cell) {
-        for (const CellCode child : {cell << 1 | 1, cell << 1})
-            if (too_far(child)) pending.push_back(child);
-    };
-    while (!pending.empty()) {
-        const CellCode cell = pending.back();
-        pending.pop_back();
-        mesh.split(cell, [&](CellCode a, CellCode b) {
-            if (b != 0) add_children(b);
-            add_children(a);
+    const float bound = rounded_down(tolerance);
+    const int root_bits = mesh.topology().root_bits();
+    std::vector<CellCode> passed;
+    for (int level = 0; level < mesh.levels(); ++level) {
+        const auto follow_children = [&](CellCode cell) {
+            const int below = mesh.level_of(cell) + 1;
+            if (below > level) return;
+            for (const CellCode child : {cell << 1, cell << 1 | 1})
+                if (deviation.at(child, below) > bound) passed.push_back(child);
+        };
+        const auto split = [&](CellCode cell) {
+            mesh.split(cell, [&](CellCode a, CellCode b) {
+                follow_children(a);
+                if (b != 0) follow_children(b);
+            });
+        };
+        for_each_above(deviation.level(level), bound, [&](std::size_t i) {
+            const CellCode cell = (CellCode{1} << (root_bits + level)) + i;
+            if (!mesh.exists(cell)) return;
+            split(cell);
+            while (!passed.empty()) {
+                const CellCode next = passed.back();
+                passed.pop_back();
+                split(next);
+            }
         });
     }
 }
