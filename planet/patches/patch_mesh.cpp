@@ -106,12 +106,13 @@ class LeafWalk {
         add_triangle({right, left, other}, root + 1);
     }
 
+    // Both roots are split, for they are one diamond.
     void loop(int column, int row) {
         for (int half = 0; half < 2; ++half) {
             const CellCode root = mesh_.topology().root_of_patch(column, row, half);
             const LatticeCorners c = lattice_.root_corners(root);
             if (half == 0) begin(root, c);
-            cell(root, place_of(c.left), place_of(c.right), place_of(c.apex), state_of_half(half));
+            halves(root, place_of(c.left), place_of(c.right), place_of(c.apex), state_of_half(half));
         }
     }
 
@@ -131,14 +132,20 @@ class LeafWalk {
         last_left_ = false;
     }
 
-    void cell(CellCode code, Place left, Place right, Place apex, unsigned state) {
-        if (mesh_.is_split(code)) {
-            const Place split = midpoint(left, right);
-            cell(code << 1, left, apex, split, strip_child_states[state][0]);
-            cell(code << 1 | 1, apex, right, split, strip_child_states[state][1]);
-        } else {
-            leaf(code, right, apex, state);
-        }
+    // Of a split cell. Both halves are looked up before either is walked.
+    void halves(CellCode code, Place left, Place right, Place apex, unsigned state) {
+        const CellCode first = code << 1, second = first | 1;
+        const bool first_is_split = mesh_.is_split(first), second_is_split = mesh_.is_split(second);
+        const Place split = midpoint(left, right);
+        const auto [first_state, second_state] = strip_child_states[state];
+        if (first_is_split)
+            halves(first, left, apex, split, first_state);
+        else
+            leaf(first, apex, split, first_state);
+        if (second_is_split)
+            halves(second, apex, right, split, second_state);
+        else
+            leaf(second, right, split, second_state);
     }
 
     void leaf(CellCode code, Place right, Place apex, unsigned state) {

@@ -159,6 +159,23 @@ void extract_at_20_m(benchmark::State& state) {
 }
 BENCHMARK(extract_at_20_m)->Unit(benchmark::kMillisecond);
 
+// A raster that fills no patch, as most: padding is left out, and what crosses the border cut.
+void extract_with_padding_at_20_m(benchmark::State& state) {
+    const PatchRaster raster(mirrored_raster(4000));
+    PatchTriangulation mesh = coarsest(raster);
+    refine_to_tolerance(mesh, patch_deviations(raster), bench_tolerance);
+    std::size_t triangles = 0;
+    for (auto _ : state) {
+        const PatchMesh out = extract(mesh, raster);
+        triangles = out.triangles.size();
+        benchmark::DoNotOptimize(out.strip.data());
+    }
+    set_per(state, "per_triangle", triangles);
+    state.counters["triangles"] = static_cast<double>(triangles);
+}
+BENCHMARK(extract_with_padding_at_20_m)->Unit(benchmark::kMillisecond);
+
+// Baseline: the same bytes.
 void copy_extracted_at_20_m(benchmark::State& state) {
     const Terrain& t = terrain();
     const PatchMesh mesh = extract(t.refined(bench_tolerance), t.raster);
