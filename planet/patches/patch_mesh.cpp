@@ -258,6 +258,12 @@ class Trim {
           on_top_(static_cast<std::size_t>(raster.width()), unknown) {}
 
     PatchMesh run() {
+        // Clipping adds no more than it leaves out, but at the border.
+        const auto border = static_cast<std::size_t>(raster_.width() + raster_.height());
+        reserve_large(out_.vertices, all_.vertices.size() + border);
+        reserve_large(out_.triangles, all_.triangles.size() + border);
+        reserve_large(out_.cell, all_.triangles.size() + border);
+        reserve_large(out_.strip, all_.strip.size() + 2 * border);
         for (std::size_t i = 0; i < all_.triangles.size(); ++i) {
             const auto& t = all_.triangles[i];
             const LatticeVertex &a = all_.vertices[t[0]], &b = all_.vertices[t[1]], &c = all_.vertices[t[2]];
@@ -312,32 +318,31 @@ class Trim {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
+bool has(const Triangle& t, std::uint32_t vertex) {
+    return (t[0] == vertex) | (t[1] == vertex) | (t[2] == vertex);
+}
+
 // The place in `next` of the corner that is not on the side it shares with `t`, or -1 if they share none.
 int apex_across(const Triangle& t, const Triangle& next) {
-    int apex = -1, shared = 0;
-    for (int k = 0; k < 3; ++k)
-        if (std::find(t.begin(), t.end(), next[static_cast<std::size_t>(k)]) != t.end())
-            ++shared;
-        else
-            apex = k;
-    return shared == 2 ? apex : -1;
+    const int shared = has(t, next[0]) + 2 * has(t, next[1]) + 4 * has(t, next[2]);
+    return shared == 6 ? 0 : shared == 5 ? 1 : shared == 3 ? 2 : -1;
 }
 
 }  // namespace
 
 void append_strips(const std::vector<Triangle>& triangles, std::vector<std::uint32_t>& strip) {
     const auto corner = [](const Triangle& t, int k) { return t[static_cast<std::size_t>(k % 3)]; };
+    int ahead = -1;  // the next triangle's apex, across the side it shares with t
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const Triangle& t = triangles[i];
-        const int ahead = i + 1 < triangles.size() ? apex_across(t, triangles[i + 1]) : -1;
-        const int apex = i > 0 ? apex_across(triangles[i - 1], t) : -1;
+        const int apex = ahead;
+        ahead = i + 1 < triangles.size() ? apex_across(t, triangles[i + 1]) : -1;
         // The last two indices are the gate into t, if the strip goes on.
         const std::uint32_t p = apex >= 0 ? strip[strip.size() - 2] : 0, q = apex >= 0 ? strip.back() : 0;
         const std::uint32_t a = corner(t, apex + 1), b = corner(t, apex + 2);
         if (apex >= 0 && ((a == p && b == q) || (a == q && b == p))) {
             // The next gate joins the apex and one end of this one; a turn of the strip keeps the earlier end.
-            const bool keeps_p =
-                ahead >= 0 && std::find(triangles[i + 1].begin(), triangles[i + 1].end(), p) != triangles[i + 1].end();
+            const bool keeps_p = ahead >= 0 && has(triangles[i + 1], p);
             if (keeps_p) strip.push_back(p);
             strip.push_back(corner(t, apex));
             continue;
