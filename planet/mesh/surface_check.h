@@ -1,10 +1,11 @@
 #pragma once
-// The proof that a mesh that is written is a surface.
+// The proof that a mesh is a surface, with a border or closed.
 
 #include <cstddef>
 #include <string>
 
 #include "planet/mesh/surface_mesh.h"
+#include "planet/mesh/triangle_mesh.h"
 
 namespace planet {
 
@@ -25,11 +26,13 @@ struct SurfaceCheck {
     }
     /// Without border, and a sphere.
     bool closed() const { return ok() && border_sides == 0 && euler() == 2; }
-    /// One line naming what fails, or "sound".
+    /// One line naming what fails, or "closed", or "sound" with its border.
     std::string summary() const;
 };
 
 /// O(n log n). @param frame says what faces outwards: ecef away from the centre, else up
 SurfaceCheck check(const SurfaceMesh& mesh, MeshFrame frame);
+/// Of the planet as it is drawn.
+SurfaceCheck check(const TriangleMesh& mesh);
 
 }  // namespace planet

@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 
 #include "planet/parallel.h"
 #include "planet/patches/triangle_rows.h"

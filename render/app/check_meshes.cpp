@@ -2,8 +2,8 @@
 #include <random>
 
 #include "planet/geodesy/ellipsoid.h"
-#include "planet/mesh/mesh_check.h"
 #include "planet/mesh/refine.h"
+#include "planet/mesh/surface_check.h"
 #include "planet/store/store_field.h"
 #include "planet/store/store_tiles.h"
 #include "render/app/check_parts.h"
@@ -52,18 +52,18 @@ CheckPart check_meshes(const std::function<void(std::string_view, double)>& prog
     index.save();
     const planet::StoreTiles tiles(field.cache(), {field.store().metadata().ellipsoid, 1});
 
-    planet::MeshCheck sum;
-    std::size_t wrong_strips = 0, wrong_euler = 0;
+    planet::SurfaceCheck sum;
+    std::size_t open_sides = 0, wrong_strips = 0, wrong_euler = 0;
     const std::vector<Eye> list = eyes();
     for (const Eye& eye : list) {
-        const planet::MeshCheck mesh = planet::check(planet::refine_planet(tiles, test_of(eye)));
+        const planet::SurfaceCheck mesh = planet::check(planet::refine_planet(tiles, test_of(eye)));
         sum.triangles += mesh.triangles;
-        sum.open_sides += mesh.open_sides;
+        open_sides += mesh.border_sides + mesh.wrong_sides;
         sum.doubled_vertices += mesh.doubled_vertices;
         sum.degenerate += mesh.degenerate;
         sum.unused_vertices += mesh.unused_vertices;
-        sum.inward += mesh.inward;
-        wrong_strips += !mesh.strip_matches;
+        sum.turned += mesh.turned;
+        wrong_strips += !mesh.strips_match;
         wrong_euler += mesh.euler() != 2;
     }
     const auto row = [](std::string name, std::size_t count) {
@@ -72,11 +72,11 @@ CheckPart check_meshes(const std::function<void(std::string_view, double)>& prog
     const auto triangles = static_cast<double>(sum.triangles);
     return {{planet::check_row("mesh triangles checked (whole planet, " + std::to_string(list.size()) + " views)",
                                triangles, triangles, "1"),
-             row("mesh sides without exactly two triangles", sum.open_sides),
+             row("mesh sides without exactly two triangles", open_sides),
              row("mesh vertices twice at one place", sum.doubled_vertices),
              row("mesh vertices without a triangle", sum.unused_vertices),
              row("mesh triangles with a corner twice", sum.degenerate),
-             row("mesh triangles that face inwards", sum.inward), row("meshes where V - E + F is not 2", wrong_euler),
+             row("mesh triangles that face inwards", sum.turned), row("meshes where V - E + F is not 2", wrong_euler),
              row("meshes whose strip is not their triangles", wrong_strips),
              row("damaged elevation tiles met", field.cache().damage().size())},
             {}};

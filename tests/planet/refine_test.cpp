@@ -4,8 +4,8 @@
 
 #include "ball_tiles.h"
 #include "planet/frames.h"
-#include "planet/mesh/mesh_check.h"
 #include "planet/mesh/refine.h"
+#include "planet/mesh/surface_check.h"
 #include "planet/octahedron/octahedron_map.h"
 
 namespace planet {
@@ -78,8 +78,8 @@ TEST(RefinePlanet, UniformMeshesAreClosedAndTheirStripIsShort) {
         const SplitTest all{glm::dvec3(0), 1e30}, none{glm::dvec3(1e12, 0, 0), 0};
         const TriangleMesh mesh = refine_planet(tiles, level == 0 ? none : all);
         ASSERT_EQ(mesh.triangles.size(), level == 0 ? 8u : 8u << level);
-        const MeshCheck c = check(mesh);
-        EXPECT_TRUE(c.ok()) << "level " << level << ": " << c.summary();
+        const SurfaceCheck c = check(mesh);
+        EXPECT_TRUE(c.closed()) << "level " << level << ": " << c.summary();
         if (level >= 8) {
             EXPECT_LE(static_cast<double>(mesh.strip.size()),
                       1.01 * 5 / 3 * static_cast<double>(mesh.triangles.size()));
@@ -96,8 +96,8 @@ void expect_closed(const TileSource& tiles, double latitude, double longitude, d
     const glm::dvec3 n = normal_from_geodetic(latitude * degrees, longitude * degrees);
     const glm::dvec3 eye = ecef_from_normal(wgs84, n, {height});
     const TriangleMesh mesh = refine_planet(tiles, {eye, K});
-    const MeshCheck c = check(mesh);
-    ASSERT_TRUE(c.ok()) << latitude << "," << longitude << " at " << height << " m: " << c.summary();
+    const SurfaceCheck c = check(mesh);
+    ASSERT_TRUE(c.closed()) << latitude << "," << longitude << " at " << height << " m: " << c.summary();
     ASSERT_GT(c.triangles, 8u);
 }
 

@@ -6,8 +6,8 @@
 
 #include "ball_tiles.h"
 #include "planet/frames.h"
-#include "planet/mesh/mesh_check.h"
 #include "planet/mesh/refine.h"
+#include "planet/mesh/surface_check.h"
 #include "planet/octahedron/cell_metrics.h"
 #include "planet/octahedron/octahedron_map.h"
 
@@ -46,8 +46,8 @@ TEST(SmoothEllipsoid, UniformMeshesAreThoseOfTheTiles) {
     for (int level = 0; level <= 14; ++level) {
         ball.refine_to_level(level);
         ASSERT_EQ(ball.triangles(), 8u << level);
-        const MeshCheck c = check(triangle_mesh(ball));
-        ASSERT_TRUE(c.ok()) << "level " << level << ": " << c.summary();
+        const SurfaceCheck c = check(triangle_mesh(ball));
+        ASSERT_TRUE(c.closed()) << "level " << level << ": " << c.summary();
         ASSERT_EQ(c.triangles, 8u << level);
         if (level == 0) continue;
         StripMesh mesh;
@@ -85,8 +85,9 @@ TEST(SmoothEllipsoid, IsClosedForEveryView) {
         for (const glm::dvec3& eye : eyes) {
             ball.refine(bounds, eye, 60);
             const TriangleMesh mesh = triangle_mesh(ball);
-            const MeshCheck c = check(mesh);
-            ASSERT_TRUE(c.ok()) << e.name << " from " << eye.x << "," << eye.y << "," << eye.z << ": " << c.summary();
+            const SurfaceCheck c = check(mesh);
+            ASSERT_TRUE(c.closed()) << e.name << " from " << eye.x << "," << eye.y << "," << eye.z << ": "
+                                    << c.summary();
             ASSERT_EQ(mesh.triangles.size(), ball.triangles());
         }
     }
