@@ -1,12 +1,11 @@
 #include "planet/mesh/segments.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <thread>
 
 #include "planet/mesh/refine.h"
 #include "planet/octahedron/cell_metrics.h"
+#include "planet/parallel.h"
 
 namespace planet {
 
@@ -226,17 +225,10 @@ void Segments::build(const TileSource& tiles, const SegmentView& view, int threa
     // Runs of roots, each built into storage of its own and joined in order: the same result for any number of threads.
     constexpr std::size_t run = 32;
     std::vector<std::unique_ptr<SegmentBuilder>> runs((roots.size() + run - 1) / run);
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-        for (std::size_t r = next++; r < runs.size(); r = next++) {
-            runs[r] = std::make_unique<SegmentBuilder>(tiles, view);
-            for (std::size_t i = r * run; i < std::min(roots.size(), (r + 1) * run); ++i) runs[r]->build(roots[i]);
-        }
-    };
-    std::vector<std::jthread> helpers;
-    for (int i = 1; i < threads; ++i) helpers.emplace_back(work);
-    work();
-    helpers.clear();
+    parallel_for(runs.size(), static_cast<unsigned>(std::max(threads, 1)), [&](std::size_t r) {
+        runs[r] = std::make_unique<SegmentBuilder>(tiles, view);
+        for (std::size_t i = r * run; i < std::min(roots.size(), (r + 1) * run); ++i) runs[r]->build(roots[i]);
+    });
 
     segments_.clear();
     vertices_.clear();

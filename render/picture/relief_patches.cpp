@@ -1,12 +1,11 @@
 #include "render/picture/relief_patches.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <thread>
 #include <unordered_map>
 
 #include "planet/octahedron/octahedron_map.h"
+#include "planet/parallel.h"
 #include "render/gl/buffer.h"
 
 namespace render {
@@ -102,20 +101,14 @@ void ReliefPatches::build(const planet::Segments& segments, const PatchSurface& 
         const auto side = static_cast<std::size_t>(patch_side >> l);
         levels_[l].resize(count_ * side * side * 4);
     }
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-        for (std::size_t p = next++; p < count_; p = next++) {
-            make_patch(codes[p], surface, radius_m, levels_[0].data() + p * patch_side * patch_side * 4);
-            for (std::size_t l = 1; l < levels_.size(); ++l) {
-                const int n = patch_side >> (l - 1), m = patch_side >> l;
-                halve(levels_[l - 1].data() + p * static_cast<std::size_t>(n * n) * 4, n,
-                      levels_[l].data() + p * static_cast<std::size_t>(m * m) * 4, m);
-            }
+    planet::parallel_for(count_, static_cast<unsigned>(std::max(threads, 1)), [&](std::size_t p) {
+        make_patch(codes[p], surface, radius_m, levels_[0].data() + p * patch_side * patch_side * 4);
+        for (std::size_t l = 1; l < levels_.size(); ++l) {
+            const int n = patch_side >> (l - 1), m = patch_side >> l;
+            halve(levels_[l - 1].data() + p * static_cast<std::size_t>(n * n) * 4, n,
+                  levels_[l].data() + p * static_cast<std::size_t>(m * m) * 4, m);
         }
-    };
-    std::vector<std::jthread> others;
-    for (int i = 1; i < threads; ++i) others.emplace_back(work);
-    work();
+    });
 }
 
 Texture ReliefPatches::upload() const {

@@ -4,10 +4,10 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <thread>
 
 #include "planet/error.h"
 #include "planet/frames.h"
+#include "planet/parallel.h"
 
 namespace render {
 namespace {
@@ -19,13 +19,8 @@ constexpr double pi = std::numbers::pi;
 /// Calls work(row) for every row 0..rows-1; rows are independent.
 template <typename Work>
 void for_rows(int rows, unsigned threads, const Work& work) {
-    const int workers = static_cast<int>(std::clamp(threads, 1u, 16u));
-    std::vector<std::jthread> others;
-    const auto some = [&](int first) {
-        for (int row = first; row < rows; row += workers) work(row);
-    };
-    for (int i = 1; i < workers; ++i) others.emplace_back(some, i);
-    some(0);
+    planet::parallel_for(static_cast<std::size_t>(rows), std::clamp(threads, 1u, 16u),
+                         [&](std::size_t row) { work(static_cast<int>(row)); });
 }
 
 double light_of_srgb(double v) {
