@@ -18,6 +18,9 @@ struct BakeCommand {
     std::filesystem::path output;
     bool resume = false, replace = false;
     planet::BakeOptions bake;
+    /// Where there is no source the sea is drawn by the least cells: at level 18 their middle is some 20 m low. Nothing:
+    /// that, or the finest level if it is coarser.
+    std::optional<int> least_level;
     std::string json;
 };
 

@@ -1,5 +1,6 @@
 // octaglobe bake: elevation data becomes a store.
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -83,6 +84,11 @@ void add_store_options(CLI::App& command, BakeCommand& o) {
               [&](Where where, const std::string& text) {
                   o.bake.extra_levels = static_cast<int>(parse_whole(where, text, -20, 20));
               });
+    add_value(command, "--least-level", "LEVEL",
+              "Cells are at least this fine everywhere, also where no source is, 1 to 40 [18: 22 km]",
+              [&](Where where, const std::string& text) {
+                  o.least_level = static_cast<int>(parse_whole(where, text, 1, 40));
+              });
     add_value(command, "--finest-level", "LEVEL", "No cell is finer than this bisection level, 1 to 60 [60]",
               [&](Where where, const std::string& text) {
                   o.bake.finest_level = static_cast<int>(parse_whole(where, text, 1, 60));
@@ -142,8 +148,18 @@ void print(const BakeCommand& command, const planet::BakeReport& baked, const pl
     print_table(std::cout, rows);
 }
 
+void set_levels(BakeCommand& command) {
+    const int finest = command.bake.finest_level, least = command.least_level.value_or(std::min(18, finest));
+    if (least > finest)
+        throw Error(Fault::bad_usage, "--least-level",
+                    std::to_string(least) + " is finer than the finest level " + std::to_string(finest),
+                    "1 to " + std::to_string(finest));
+    command.bake.least_level = least;
+}
+
 void run(BakeCommand& command) {
     Report report("bake", command.json);
+    set_levels(command);
     const BakeTarget target = check_bake_target(command.output, command.resume, command.replace);
     if (command.sources.empty() && !command.over_earth && target != BakeTarget::finished)
         throw Error(Fault::bad_usage, "bake", "no sources", "files, patterns or --base earth");

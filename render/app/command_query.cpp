@@ -60,15 +60,18 @@ void height(const Options& options) {
         orthometric ? planet::OrthometricHeight{found} : planet::EllipsoidalHeight{found} - N;
     const planet::EllipsoidalHeight h = H + N;
     const double bound = field.bound_at(normal).total();
+    const bool answered = bound > 0;  // no surface of plane cells is that near to samples
     for (const auto& line : field.cache().damage()) std::cerr << "octaglobe: warning: " << line << '\n';
     std::cout << fixed(H.m, 2) << " m above EGM96, " << fixed(h.m, 2) << " m above the ellipsoid; "
-              << (std::isfinite(bound) ? "samples there within " + four_digits(bound) + " m of the surface"
-                                       : "no bound: the tile there is damaged")
+              << (!answered              ? "no source there"
+                  : std::isfinite(bound) ? "samples there within " + four_digits(bound) + " m of the surface"
+                                         : "no bound, the tile there is damaged")
               << '\n';
     report.set("latitude_deg", place.latitude / degrees);
     report.set("longitude_deg", place.longitude / degrees);
     report.set("height_m", H.m);
-    report.set("height_bound_m", bound);
+    report.set("height_bound_m", answered ? nlohmann::ordered_json(bound) : nlohmann::ordered_json());
+    report.set("has_source", answered);
     report.set("ellipsoidal_height_m", h.m);
     report.set("geoid_undulation_m", N.m);
     report.set("vertical_datum", planet::name_of(planet::VerticalDatum::egm96));
