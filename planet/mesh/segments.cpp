@@ -35,7 +35,7 @@ class RootCollector {
                 roots_.push_back({&t, i, distance_to(t.split[i >> 1], radius_of(t, i >> 1))});
             return;
         }
-        const SplitRecord& s = t.split[i];
+        const SplitRecord s = t.split[i];
         const glm::dvec3 m(s.x, s.y, s.z);
         const double radius = radius_of(t, i);
         if (view_.culling.hidden(m, radius)) return;
@@ -51,10 +51,11 @@ class RootCollector {
 
   private:
     // Everything in a cell is within this of its split vertex. A diamond that does not exist has no radius: its cells
-    // are flat, and their corners are the farthest.
+    // are flat, and their corners are the farthest. One that only lacks tiles in memory has: what is in view must not
+    // depend on these.
     double radius_of(const PlacedTile& t, unsigned i) const {
-        const SplitRecord& s = t.split[i];
-        if (s.deviation > 0) return static_cast<double>(s.radius);
+        const SplitRecord s = t.split[i];
+        if (s.deviation != 0) return static_cast<double>(s.radius);
         double reach = 0;
         for (const std::uint16_t corner : tile_layout().corners[i])
             reach = std::max(reach, glm::distance(glm::dvec3(s.x, s.y, s.z), ecef_from_grid(t.position[corner])));
