@@ -78,7 +78,7 @@ MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t v
             grid_coordinate(a, axis) + grid_coordinate(b, axis) - 2 * grid_coordinate(place, axis);
         return static_cast<float>(static_cast<double>(twice) * (0.5 * grid_unit_m));
     };
-    const SplitRecord& s = t->split[split_cells()[vertex]];
+    const SplitRecord s = t->split[split_cells()[vertex]];
     return {offset(0), offset(1), offset(2), s.deviation, s.radius};
 }
 
@@ -123,8 +123,8 @@ int SegmentBuilder::find_in_children(const PlacedTile& t, unsigned i, int level)
         a = find_below(t, first, level);
         b = find_below(t, second, level);
     } else {
-        const SplitRecord* split = &t.split[first];  // both are tested before either is walked: the tests overlap
-        const bool first_split = test_(split[0]), second_split = test_(split[1]);
+        // Both are tested before either is walked: the tests overlap.
+        const bool first_split = test_(t.split[first]), second_split = test_(t.split[second]);
         a = first_split ? find_in_children(t, first, level) : push(t, first, level);
         b = second_split ? find_in_children(t, second, level) : push(t, second, level);
     }
@@ -241,7 +241,7 @@ void SegmentBuilder::certify(const Leaf& leaf, bool whole_segment) {
         slack_.add(test_, t.split[i]);
         certify(t.split[i]);
     } else if (t.depth == tile_levels && !t.child_bound.empty()) {
-        const SplitRecord& bound = t.child_bound[i - tile_cells];
+        const SplitRecord bound = t.child_bound[i - tile_cells];
         slack_.add(test_, bound);
         const PlacedTile* below = t.child(*tiles_, i - tile_cells, test_);
         if (below) slack_.add(test_, below->split[1]);
@@ -252,8 +252,8 @@ void SegmentBuilder::certify(const Leaf& leaf, bool whole_segment) {
 
 // An unsplit diamond: its deviation over what the test allows at the nearest point below it.
 void SegmentBuilder::certify(const SplitRecord& s) {
-    if (!(s.deviation > 0)) return;
-    const double deviation = static_cast<double>(s.deviation), scaled = test_.K * deviation;
+    if (s.deviation == 0) return;
+    const double deviation = std::abs(static_cast<double>(s.deviation)), scaled = test_.K * deviation;
     deviation_max_ = std::max(deviation_max_, deviation);
     const double d2 = test_.distance2(s), r = static_cast<double>(s.radius);
     // scaled / (d - r) > ratio_max without a root or a division: most leaves are not the worst.
