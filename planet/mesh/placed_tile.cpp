@@ -1,8 +1,9 @@
 #include "planet/mesh/placed_tile.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "planet/mesh/deviation.h"
+#include "planet/mesh/exaggeration.h"
 #include "planet/octahedron/octahedron_map.h"
 
 namespace planet {
@@ -39,38 +40,36 @@ PlacedTile::PlacedTile(const Tile& tile, const Placement& placement)
         position[v] = grid_from_ecef(p);
         rounded[v] = glm::vec3(p);
     }
-    // Exaggeration e >= 1 stretches distances and deviations by at most e (the part that is curvature is not
-    // stretched), so e * radius and e * deviation keep the test nested. The stored radii hold for split vertices
-    // rounded to float at e = 1; at another e the roundings differ by up to 0.9 (1 + e) m a level, which the last term
-    // covers.
-    const double e = std::max(1.0, placement.exaggeration);
-    const double slack = placement.exaggeration == 1.0 ? 0.0 : 2.0 * (1.0 + e);
+    const Exaggeration exaggeration(placement.ellipsoid, placement.exaggeration);
     for (std::size_t i = 1; i < split.size(); ++i) {
         const glm::vec3& m = rounded[layout.split_vertex[i]];
         const int level = root.bisection_level() + static_cast<int>(std::bit_width(i)) - 1;
-        const double r = e * static_cast<double>(tile.radius[i]) + slack * (max_bisection_level + 1 - level);
-        split[i] = {m.x, m.y, m.z, static_cast<float>(e * static_cast<double>(tile.deviation[i])),
-                    std::nextafter(static_cast<float>(r), std::numeric_limits<float>::max())};
-        if (placement.exaggeration == 1.0) split[i].radius = tile.radius[i];
+        split[i] = {m.x, m.y, m.z, tile.deviation[i], tile.radius[i]};
+        if (placement.exaggeration == 1.0 || !(tile.deviation[i] > 0)) continue;
+        const double deviation = static_cast<double>(tile.deviation[i]), radius = static_cast<double>(tile.radius[i]);
+        split[i].deviation = next_up(static_cast<float>(exaggeration.deviation(deviation, level)));
+        split[i].radius = next_up(static_cast<float>(exaggeration.radius(radius, level)));
     }
-    if (children_) bound_children(tile, rounded, placement.exaggeration);
+    if (children_) bound_children(tile, rounded, placement);
 }
 
 // The split vertex of a root below is not known here, but it lies near the middle of the chord of its split side: the
 // plane of its cell meets its normal there, to second order, and the certified deviation bounds how far it is from that
 // plane. 2 % of the side covers the second order and the roundings of an exaggerated record (see the constructor).
-void PlacedTile::bound_children(const Tile& tile, const std::vector<glm::vec3>& rounded, double exaggeration) {
+void PlacedTile::bound_children(const Tile& tile, const std::vector<glm::vec3>& rounded, const Placement& placement) {
     const TileLayout& layout = tile_layout();
-    const double e = std::max(1.0, exaggeration);
-    const double rounding = 2.0 * (1.0 + e) * (max_bisection_level + 1);
+    const Exaggeration exaggeration(placement.ellipsoid, placement.exaggeration);
+    const double rounding = 2.0 * (1.0 + std::max(1.0, placement.exaggeration)) * (max_bisection_level + 1);
+    const int level = root.bisection_level() + tile_levels;
     child_bound.assign(tile_cells, SplitRecord{0, 0, 0, 0, 0});
     for (std::size_t k = 0; k < tile_cells; ++k) {
         if (!tile.child_exists[k] || !(tile.child_deviation[k] > 0)) continue;
         const auto& corner = layout.corners[tile_cells + k];
         const glm::vec3 &a = rounded[corner[0]], &b = rounded[corner[1]];
         const glm::vec3 middle = 0.5f * (a + b);
-        const double deviation = e * static_cast<double>(tile.child_deviation[k]);
-        const double radius = e * static_cast<double>(tile.child_radius[k]) + deviation +
+        const double stored_radius = static_cast<double>(tile.child_radius[k]);
+        const double deviation = exaggeration.deviation(static_cast<double>(tile.child_deviation[k]), level);
+        const double radius = exaggeration.radius(stored_radius, level) + deviation +
                               0.02 * static_cast<double>(glm::distance(a, b)) + rounding;
         child_bound[k] = {middle.x, middle.y, middle.z, static_cast<float>(deviation * 1.0001),
                           static_cast<float>(radius * 1.0001)};

@@ -67,7 +67,7 @@ class PlacedTile {
     }
 
   private:
-    void bound_children(const Tile& tile, const std::vector<glm::vec3>& rounded, double exaggeration);
+    void bound_children(const Tile& tile, const std::vector<glm::vec3>& rounded, const Placement& placement);
 
     // By position: unknown until asked for (nullptr), known to be missing (this), or the tile.
     std::unique_ptr<std::atomic<const PlacedTile*>[]> children_;

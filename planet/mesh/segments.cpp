@@ -169,7 +169,10 @@ class SegmentBuilder {
     void leaf(const PlacedTile& t, unsigned i, unsigned state) {
         strip_.leaf(state, [&](std::size_t corner) { return add(t, layout_.corners[i][corner]); });
         leaf_levels.push_back(static_cast<std::uint8_t>(code_of(t, i).bisection_level()));
-        if (!(i >> t.depth)) certify(t.split[i]);
+        if (!(i >> t.depth))
+            certify(t.split[i]);
+        else if (t.depth == tile_levels && !t.child_bound.empty())
+            certify_unentered(t, i - tile_cells);
     }
 
     std::vector<Segment> segments;
@@ -193,6 +196,12 @@ class SegmentBuilder {
         vertices.push(
             {t.position[vertex], static_cast<std::uint16_t>(u), static_cast<std::uint16_t>(v), t.height[vertex]});
         return static_cast<std::uint32_t>(vertices.size() - 1 - first_vertex_);
+    }
+
+    // A leaf where a tile below begins: that one's root is not split, known from its bound or from itself.
+    void certify_unentered(const PlacedTile& t, unsigned k) {
+        const PlacedTile* below = t.child(tiles_, k, view_.test);
+        certify(below ? below->split[1] : t.child_bound[k]);
     }
 
     // An unsplit diamond: its deviation over what the test allows at the nearest point below it.
