@@ -5,6 +5,7 @@
 #include <cmath>
 #include <future>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "planet/elevation/image_io.h"
@@ -279,9 +280,10 @@ class Painter {
         view.finest_patch_level = std::max(surface_.store->metadata().finest_level - finest_patch_above, 0);
         view.segment_angle = patch_pixels / camera_.focal_px;
         const auto detailed = [&] {
-            return static_cast<std::size_t>(std::count_if(mesh.segments.segments().begin(),
-                                                          mesh.segments.segments().end(),
-                                                          [](const planet::Segment& s) { return s.detailed; }));
+            std::set<planet::LocationCode> patches;
+            for (const planet::Segment& s : mesh.segments.segments())
+                if (s.detailed) patches.insert(s.patch);
+            return patches.size();
         };
         do {
             steps_.time("mesh", [&] { mesh.segments.build(surface_.tiles, view, static_cast<int>(threads_)); });
@@ -302,9 +304,9 @@ class Painter {
             overlay_->upload(segments);
             patch_texture_ = patches.upload();
         });
-        report_.triangles += segments.leaf_levels().size();
-        report_.vertices += segments.vertices().size();
-        report_.strip_indices += segments.indices().size();
+        report_.triangles += segments.leaf_count();
+        report_.vertices += segments.vertex_count();
+        report_.strip_indices += segments.index_count();
         report_.deviation_max_m = std::max(report_.deviation_max_m, segments.deviation_max_m());
         report_.pixel_deviation_max =
             std::max(report_.pixel_deviation_max, segments.ratio_max() * options_.max_pixel_deviation);
