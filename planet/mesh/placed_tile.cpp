@@ -1,8 +1,9 @@
 #include "planet/mesh/placed_tile.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "planet/mesh/deviation.h"
+#include "planet/mesh/exaggeration.h"
 #include "planet/octahedron/octahedron_map.h"
 
 namespace planet {
@@ -77,41 +78,40 @@ void PlacedTile::place(const Placement& placement) {
         position[v] = grid_from_ecef(p);
         rounded[v] = glm::vec3(p);
     }
-    place_records(rounded, placement.exaggeration);
-    if (!child_bound.empty()) bound_children(rounded, placement.exaggeration);
+    place_records(rounded, placement);
+    if (!child_bound.empty()) bound_children(rounded, placement);
     if (placement.exaggeration == 1.0) stored_ = {};
 }
 
-// Exaggeration e >= 1 stretches distances and deviations by at most e (the part that is curvature is not stretched), so
-// e * radius and e * deviation keep the test nested. The stored radii hold for split vertices rounded to float at e = 1;
-// at another e the roundings differ by up to 0.9 (1 + e) m a level, which the last term covers.
-void PlacedTile::place_records(const std::vector<glm::vec3>& rounded, double exaggeration) {
+void PlacedTile::place_records(const std::vector<glm::vec3>& rounded, const Placement& placement) {
     const TileLayout& layout = tile_layout();
-    const double e = std::max(1.0, exaggeration);
-    const double slack = exaggeration == 1.0 ? 0.0 : 2.0 * (1.0 + e);
+    const Exaggeration exaggeration(placement.ellipsoid, placement.exaggeration);
     split.by_vertex_.assign(rounded.size(), SplitRecord{});
-    for (int level = 0; level < depth; ++level) {
-        const double rounding = slack * (max_bisection_level + 1 - root.bisection_level() - level);
-        const auto first = layout.vertex_count[static_cast<std::size_t>(level)],
-                   end = layout.vertex_count[static_cast<std::size_t>(level) + 1];
+    for (int k = 0; k < depth; ++k) {
+        const int level = root.bisection_level() + k;
+        const auto first = layout.vertex_count[static_cast<std::size_t>(k)],
+                   end = layout.vertex_count[static_cast<std::size_t>(k) + 1];
         for (std::size_t v = first; v < end; ++v) {
             const glm::vec3& m = rounded[v];
             const StoredRecord s = stored_[v];
-            const double r = e * static_cast<double>(s.radius) + rounding;
-            const float radius =
-                slack == 0 ? s.radius : std::nextafter(static_cast<float>(r), std::numeric_limits<float>::max());
-            split.by_vertex_[v] = {m.x, m.y, m.z, static_cast<float>(e * static_cast<double>(s.deviation)), radius};
+            SplitRecord& record = split.by_vertex_[v];
+            record = {m.x, m.y, m.z, s.deviation, s.radius};
+            if (placement.exaggeration == 1.0 || !(s.deviation > 0)) continue;
+            record.deviation =
+                next_up(static_cast<float>(exaggeration.deviation(static_cast<double>(s.deviation), level)));
+            record.radius = next_up(static_cast<float>(exaggeration.radius(static_cast<double>(s.radius), level)));
         }
     }
 }
 
 // The split vertex of a root below is not known here, but it lies near the middle of the chord of its split side: the
 // plane of its cell meets its normal there, to second order, and the certified deviation bounds how far it is from that
-// plane. 2 % of the side covers the second order and the roundings of an exaggerated record (see place_records).
-void PlacedTile::bound_children(const std::vector<glm::vec3>& rounded, double exaggeration) {
+// plane. 2 % of the side covers the second order and the roundings of an exaggerated record (see Exaggeration).
+void PlacedTile::bound_children(const std::vector<glm::vec3>& rounded, const Placement& placement) {
     const TileLayout& layout = tile_layout();
-    const double e = std::max(1.0, exaggeration);
-    const double rounding = 2.0 * (1.0 + e) * (max_bisection_level + 1);
+    const Exaggeration exaggeration(placement.ellipsoid, placement.exaggeration);
+    const double rounding = 2.0 * (1.0 + std::max(1.0, placement.exaggeration)) * (max_bisection_level + 1);
+    const int level = root.bisection_level() + tile_levels;
     for (unsigned k = 0; k < tile_cells; ++k) {
         if (!child_bound.has(k)) continue;
         ChildBounds::Below& below = child_bound.below_[child_bound.rank(k)];
@@ -120,8 +120,8 @@ void PlacedTile::bound_children(const std::vector<glm::vec3>& rounded, double ex
         const auto& corner = layout.corners[tile_cells + k];
         const glm::vec3 &a = rounded[corner[0]], &b = rounded[corner[1]];
         const glm::vec3 middle = 0.5f * (a + b);
-        const double deviation = e * static_cast<double>(below.stored.deviation);
-        const double radius = e * static_cast<double>(below.stored.radius) + deviation +
+        const double deviation = exaggeration.deviation(static_cast<double>(below.stored.deviation), level);
+        const double radius = exaggeration.radius(static_cast<double>(below.stored.radius), level) + deviation +
                               0.02 * static_cast<double>(glm::distance(a, b)) + rounding;
         below.bound = {middle.x, middle.y, middle.z, static_cast<float>(deviation * 1.0001),
                        static_cast<float>(radius * 1.0001)};
