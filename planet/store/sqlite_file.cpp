@@ -35,7 +35,7 @@ void SqliteFile::Close::operator()(sqlite3* c) const {
 }
 
 SqliteFile::SqliteFile(const std::filesystem::path& path, Access access)
-    : where_(access == Access::in_memory ? "store in memory" : path.string()) {
+    : where_(access == Access::in_memory ? in_memory_name : path.string()) {
     std::string uri = ":memory:";
     int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI;
     if (access == Access::create) {
