@@ -139,11 +139,6 @@ int reduction_for(int width, int height, const RasterOptions& options, const std
     return n;
 }
 
-std::string text_of(const SampleWindow& w) {
-    return "columns " + std::to_string(w.column) + " to " + std::to_string(w.column + w.columns - 1) + ", rows " +
-           std::to_string(w.row) + " to " + std::to_string(w.row + w.rows - 1);
-}
-
 // Windows of the height band as marked samples.
 class GdalReader : public RasterReader {
   public:
@@ -200,7 +195,8 @@ class GdalReader : public RasterReader {
         const auto [width, height] = std::pair(natural_columns(), natural_rows());
         const auto bytes = static_cast<std::size_t>(GDALGetDataTypeSizeBytes(band_.GetRasterDataType()));
         const std::string driver = dataset_->GetDriverName();
-        if (driver == "VRT") return std::size_t{16} << 20;  // its sources' blocks are unknown
+        if (driver == "VRT")
+            if (const auto source = first_source()) return source->decoded_bytes(columns);
         const bool strips = width == band_.GetXSize();
         if (driver == "GTiff" && strips && !dataset_->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE")) return 0;
         const int rows = (columns + 2 * height - 2) / height * height;
@@ -225,6 +221,18 @@ class GdalReader : public RasterReader {
     }
 
   private:
+    // Of a virtual raster: one of the files that it is made of, null if there is none that can be opened.
+    std::unique_ptr<GdalReader> first_source() const {
+        const GdalMessages messages;
+        for (const std::string& file : files())
+            if (file != path_) try {
+                    return std::make_unique<GdalReader>(file, options_, messages);
+                } catch (const Error&) {
+                    return nullptr;
+                }
+        return nullptr;
+    }
+
     glm::ivec2 natural_size() const {
         glm::ivec2 size(0);
         band_.GetBlockSize(&size.x, &size.y);
@@ -258,13 +266,21 @@ class GdalReader : public RasterReader {
 
     void fetch(GDALRasterBand& band, const SampleWindow& w, void* out, GDALDataType type,
                const GdalMessages& messages) const {
+        if (can_read(band, w, out, type)) return;
+        SampleWindow bad = w;
+        bad.rows = 1;
+        while (bad.row < w.row + w.rows - 1 && can_read(band, bad, out, type)) ++bad.row;
+        throw Error(Fault::bad_data, path_,
+                    "is damaged or cut short in row " + std::to_string(bad.row) + ", columns " +
+                        std::to_string(w.column) + " to " + std::to_string(w.column + w.columns - 1) +
+                        (messages.last().empty() ? "" : ": ") + messages.last(),
+                    one_band);
+    }
+
+    bool can_read(GDALRasterBand& band, const SampleWindow& w, void* out, GDALDataType type) const {
         const int n = reduction_;
-        if (band.RasterIO(GF_Read, w.column * n, w.row * n, w.columns * n, w.rows * n, out, w.columns, w.rows, type, 0,
-                          0, nullptr) != CE_None)
-            throw Error(
-                Fault::bad_data, path_,
-                "is damaged or cut short in " + text_of(w) + (messages.last().empty() ? "" : ": ") + messages.last(),
-                one_band);
+        return band.RasterIO(GF_Read, w.column * n, w.row * n, w.columns * n, w.rows * n, out, w.columns, w.rows, type,
+                             0, 0, nullptr) == CE_None;
     }
 
     template <class Integer>
