@@ -37,9 +37,13 @@ void PlacedTile::note_children(const Tile& tile) {
             c.exists_[word] |= std::uint64_t{tile.child_exists[64 * word + bit]} << bit;
         children += static_cast<std::size_t>(std::popcount(c.exists_[word]));
     }
+    for (unsigned i = 127; i >= 1; --i) {
+        const bool any = i >= 64 ? c.exists_[i - 64] != 0 : c.has_below(2 * i) || c.has_below(2 * i + 1);
+        c.any_[i >> 6] |= std::uint64_t{any} << (i & 63);
+    }
     c.below_ = std::vector<ChildBounds::Below>(children);
     for (unsigned k = 0; k < tile_cells; ++k)
-        if (c.has(k)) c.below_[c.rank(k)].stored = {tile.child_deviation[k], tile.child_radius[k]};
+        if (c.has(k)) c.below_[c.index(k)].stored = {tile.child_deviation[k], tile.child_radius[k]};
 }
 
 PlacedTile::PlacedTile(const PlacedTile& other, const Placement& placement)
@@ -51,6 +55,7 @@ PlacedTile::PlacedTile(const PlacedTile& other, const Placement& placement)
       stored_(other.height.size()) {
     child_bound.exists_ = other.child_bound.exists_;
     child_bound.rank_ = other.child_bound.rank_;
+    child_bound.any_ = other.child_bound.any_;
     child_bound.below_ = std::vector<ChildBounds::Below>(other.child_bound.below_.size());
     for (std::size_t v = 3; v < stored_.size(); ++v) stored_[v] = other.stored(v);
     for (std::size_t k = 0; k < child_bound.below_.size(); ++k)
@@ -114,7 +119,7 @@ void PlacedTile::bound_children(const std::vector<glm::vec3>& rounded, const Pla
     const int level = root.bisection_level() + tile_levels;
     for (unsigned k = 0; k < tile_cells; ++k) {
         if (!child_bound.has(k)) continue;
-        ChildBounds::Below& below = child_bound.below_[child_bound.rank(k)];
+        ChildBounds::Below& below = child_bound.below_[child_bound.index(k)];
         below.bound = {};
         if (!(below.stored.deviation > 0)) continue;
         const auto& corner = layout.corners[tile_cells + k];
@@ -132,17 +137,8 @@ void PlacedTile::close() {
     for (SplitRecord& s : split.by_vertex_) s.deviation = -std::abs(s.deviation);
 }
 
-bool PlacedTile::has_child_below(unsigned i) const {
-    if (child_bound.empty()) return false;
-    const int levels = tile_levels + 1 - static_cast<int>(std::bit_width(i));
-    const unsigned first = (i << levels) - tile_cells, count = 1u << levels;
-    if (count < 64) return (child_bound.exists_[first >> 6] >> (first & 63) & ((std::uint64_t{1} << count) - 1)) != 0;
-    const auto begin = child_bound.exists_.begin() + first / 64;
-    return std::any_of(begin, begin + count / 64, [](std::uint64_t word) { return word != 0; });
-}
-
 const PlacedTile* PlacedTile::child_at(const TileSource& source, unsigned k) const {
-    const ChildBounds::Below& below = child_bound.below_[child_bound.rank(k)];
+    const ChildBounds::Below& below = child_bound.below_[child_bound.index(k)];
     if (below.known.load(std::memory_order_acquire)) return below.tile.load(std::memory_order_relaxed);
     const PlacedTile* tile = source.tile(LocationCode(root.bits() << tile_levels | k));
     below.tile.store(tile, std::memory_order_relaxed);
@@ -151,7 +147,7 @@ const PlacedTile* PlacedTile::child_at(const TileSource& source, unsigned k) con
 }
 
 void PlacedTile::set_child(unsigned k, const PlacedTile* tile) {
-    const ChildBounds::Below& below = child_bound.below_[child_bound.rank(k)];
+    const ChildBounds::Below& below = child_bound.below_[child_bound.index(k)];
     below.tile.store(tile, std::memory_order_relaxed);
     below.known.store(true, std::memory_order_release);
 }

@@ -63,7 +63,20 @@ class PlacedTile {
         bool has(unsigned k) const { return (exists_[k >> 6] >> (k & 63) & 1) != 0; }
         /// A record that the root of that tile passes at most: where this one is not split, the cell is a leaf, and the
         /// tile need not be loaded to know it. Never split where there is none.
-        SplitRecord operator[](unsigned k) const { return has(k) ? below_[rank(k)].bound : SplitRecord{}; }
+        SplitRecord operator[](unsigned k) const { return has(k) ? below_[index(k)].bound : SplitRecord{}; }
+        /// Whether the store has a tile below local cell i, i < 2 * tile_cells.
+        bool has_below(unsigned i) const {
+            if (i < 128) return (any_[i >> 6] >> (i & 63) & 1) != 0;
+            const int levels = tile_levels + 1 - static_cast<int>(std::bit_width(i));
+            const unsigned first = (i << levels) - tile_cells;
+            return (exists_[first >> 6] >> (first & 63) & ((std::uint64_t{1} << (1u << levels)) - 1)) != 0;
+        }
+        std::size_t size() const { return below_.size(); }
+        /// How many tiles there are below before position k.
+        std::size_t index(unsigned k) const {
+            const std::uint64_t before = (std::uint64_t{1} << (k & 63)) - 1;
+            return rank_[k >> 6] + static_cast<std::size_t>(std::popcount(exists_[k >> 6] & before));
+        }
 
       private:
         friend class PlacedTile;
@@ -76,12 +89,9 @@ class PlacedTile {
             mutable std::atomic<bool> known = false;  // whether the source has been asked
             mutable std::atomic<const PlacedTile*> tile = nullptr;
         };
-        std::size_t rank(unsigned k) const {
-            const std::uint64_t before = (std::uint64_t{1} << (k & 63)) - 1;
-            return rank_[k >> 6] + static_cast<std::size_t>(std::popcount(exists_[k >> 6] & before));
-        }
         std::array<std::uint64_t, tile_cells / 64> exists_{};  // bit k
         std::array<std::uint16_t, tile_cells / 64> rank_{};    // how many there are before each 64 bits
+        std::array<std::uint64_t, 2> any_{};                   // bit i: has_below(i), for cells of levels 0 to 6
         std::vector<Below> below_;                             // those that exist, ascending
     };
 
@@ -105,7 +115,7 @@ class PlacedTile {
     void close();
 
     /// Whether the store has a tile below local cell i, i < 2 * tile_cells.
-    bool has_child_below(unsigned i) const;
+    bool has_child_below(unsigned i) const { return child_bound.has_below(i); }
 
     /// The tile below the cell at relative level 12 and position k, or nullptr if there is none: asked of the source
     /// once.

@@ -15,7 +15,7 @@ namespace {
 constexpr Side sides[] = {Side::split, Side::left_leg, Side::right_leg};
 
 std::size_t memory_of(const ResidentTile& tile) {
-    return sizeof tile + tile.tile->bytes() + tile.support.size() * sizeof(LocationCode);
+    return tile.tile->bytes() + (tile.support.size() + tile.below.size()) * sizeof(ResidentTile*);
 }
 
 unsigned position_of(LocationCode root) {
@@ -30,7 +30,7 @@ LocationCode root_above(LocationCode root) {
 bool may_open(const ResidentTile& tile, unsigned i) {
     if (i >> tile.tile->depth || !tile.tile->is_stored(i)) return false;
     if (i > 1) return tile.tile->is_open(i >> 1);
-    return !tile.above || tile.above->tile->is_open((tile_cells | position_of(tile.tile->root)) >> 1);
+    return !tile.above || tile.above->tile->is_open((tile_cells | position_of(tile.root)) >> 1);
 }
 
 // The local index, in the tile beside, of the other cell of a side cell's diamond.
@@ -47,47 +47,84 @@ const PlacedTile* ResidentSet::tile(LocationCode root) const {
 
 ResidentTile* ResidentSet::find(LocationCode root) {
     const auto found = tiles_.find(root.bits());
-    return found == tiles_.end() ? nullptr : &found->second;
+    return found == tiles_.end() || !found->second.tile ? nullptr : &found->second;
 }
 
 std::vector<ResidentTile*> ResidentSet::all() {
     std::vector<ResidentTile*> list;
-    list.reserve(tiles_.size());
-    for (auto& [code, tile] : tiles_) list.push_back(&tile);
+    list.reserve(size_);
+    for (auto& [code, tile] : tiles_)
+        if (tile.tile) list.push_back(&tile);
     return list;
 }
 
-ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile) {
-    const LocationCode root = tile->root;
+ResidentTile& ResidentSet::slot(LocationCode root) {
     const auto [at, added] = tiles_.try_emplace(root.bits());
-    assert(added);
-    ResidentTile& resident = at->second;
+    if (added) {
+        at->second.root = root;
+        bytes_ += sizeof(ResidentTile);
+    }
+    return at->second;
+}
+
+void ResidentSet::free_if_unused(ResidentTile& tile) {
+    if (tile.tile || tile.supported > 0) return;
+    bytes_ -= sizeof(ResidentTile);
+    tiles_.erase(tile.root.bits());
+}
+
+ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile) {
+    ResidentTile& resident = slot(tile->root);
+    assert(!resident.tile);
+    tile->close();
+    tile->set_no_children();
+    resident.below.assign(tile->child_bound.size(), nullptr);
     resident.tile = std::move(tile);
-    resident.support = tile_support(root, resident.tile->depth);
-    resident.tile->close();
-    resident.tile->set_no_children();
-    bytes_ += memory_of(resident);
+    resident.fresh = true;
     tie(resident);
+    ++size_;
+    bytes_ += memory_of(resident);
     unsettle(resident, 0);
-    changes_.push_back(root);
+    changes_.push_back(resident.root);
     return resident;
 }
 
 void ResidentSet::tie(ResidentTile& tile) {
-    const LocationCode root = tile.tile->root;
+    const LocationCode root = tile.root;
     if (root.bisection_level() > 0) {
         tile.above = find(root_above(root));
         assert(tile.above);
         tile.above->tile->set_child(position_of(root), tile.tile.get());
+        tile.above->below[tile.above->tile->child_bound.index(position_of(root))] = &tile;
         ++tile.above->children;
     }
     for (const Side side : sides) {
         ResidentTile* const beside = find(neighbor(root, side));
         tile.beside[static_cast<std::size_t>(side)] = beside;
         for (const Side back : sides)
-            if (beside && neighbor(beside->tile->root, back) == root)
-                beside->beside[static_cast<std::size_t>(back)] = &tile;
+            if (beside && neighbor(beside->root, back) == root) beside->beside[static_cast<std::size_t>(back)] = &tile;
     }
+    for (const LocationCode support : tile_support(root, tile.tile->depth)) {
+        tile.support.push_back(&slot(support));
+        ++tile.support.back()->supported;
+    }
+}
+
+void ResidentSet::untie(ResidentTile& tile) {
+    for (ResidentTile* const beside : tile.beside)
+        if (beside)
+            std::replace(beside->beside.begin(), beside->beside.end(), &tile, static_cast<ResidentTile*>(nullptr));
+    if (tile.above) {
+        tile.above->tile->set_child(position_of(tile.root), nullptr);
+        tile.above->below[tile.above->tile->child_bound.index(position_of(tile.root))] = nullptr;
+        --tile.above->children;
+    }
+    for (ResidentTile* const support : std::exchange(tile.support, {})) {
+        --support->supported;
+        free_if_unused(*support);
+    }
+    tile.above = nullptr;
+    tile.beside = {};
 }
 
 void ResidentSet::erase(LocationCode root) {
@@ -97,31 +134,28 @@ void ResidentSet::erase(LocationCode root) {
         ResidentTile* const beside = tile.beside[static_cast<std::size_t>(s.side)];
         if (beside && tile.tile->is_open(s.cell)) set_open(*beside, local_beyond(root, s.cell), false);
     }
-    for (ResidentTile* const beside : tile.beside)
-        if (beside)
-            std::replace(beside->beside.begin(), beside->beside.end(), &tile, static_cast<ResidentTile*>(nullptr));
-    if (tile.above) {
-        tile.above->tile->set_child(position_of(root), nullptr);
-        --tile.above->children;
-    }
     for (int level = 0; level < tile_levels; ++level)
-        if (tile.unsettled[static_cast<std::size_t>(level)])
+        if (std::exchange(tile.unsettled[static_cast<std::size_t>(level)], false))
             std::erase(unsettled_[static_cast<std::size_t>(root.bisection_level() + level)], &tile);
+    --size_;
     bytes_ -= memory_of(tile);
-    tiles_.erase(root.bits());
+    untie(tile);
+    tile.tile.reset();
+    tile.below = {};
+    free_if_unused(tile);
     changes_.push_back(root);
 }
 
 void ResidentSet::unsettle(ResidentTile& tile, int level) {
     bool& unsettled = tile.unsettled[static_cast<std::size_t>(level)];
     if (std::exchange(unsettled, true)) return;
-    unsettled_[static_cast<std::size_t>(tile.tile->root.bisection_level() + level)].push_back(&tile);
+    unsettled_[static_cast<std::size_t>(tile.root.bisection_level() + level)].push_back(&tile);
 }
 
 void ResidentSet::settle() {
     for (std::size_t level = 0; level < unsettled_.size(); ++level) {
         for (ResidentTile* const tile : std::exchange(unsettled_[level], {})) {
-            const int relative = static_cast<int>(level) - tile->tile->root.bisection_level();
+            const int relative = static_cast<int>(level) - tile->root.bisection_level();
             tile->unsettled[static_cast<std::size_t>(relative)] = false;
             settle_level(*tile, relative);
         }
@@ -147,7 +181,7 @@ void ResidentSet::settle_level(ResidentTile& tile, int level) {
 }
 
 void ResidentSet::settle_side(ResidentTile& tile, unsigned local, ResidentTile* beside) {
-    const unsigned beyond = local_beyond(tile.tile->root, local);
+    const unsigned beyond = local_beyond(tile.root, local);
     const bool open = beside && may_open(tile, local) && may_open(*beside, beyond);
     if (open == tile.tile->is_open(local)) return;
     set_open(tile, local, open);
@@ -156,7 +190,7 @@ void ResidentSet::settle_side(ResidentTile& tile, unsigned local, ResidentTile* 
 
 void ResidentSet::set_open(ResidentTile& tile, unsigned local, bool open) {
     tile.tile->set_open(local, open);
-    if (!tile.fresh) changes_.push_back(cell_code(tile.tile->root, local));
+    if (!tile.fresh) changes_.push_back(cell_code(tile.root, local));
     const int below = relative_level(local) + 1;
     if (below < tile.tile->depth)
         unsettle(tile, below);
@@ -166,8 +200,9 @@ void ResidentSet::set_open(ResidentTile& tile, unsigned local, bool open) {
 
 void ResidentSet::unsettle_below(ResidentTile& tile, unsigned local) {
     if (tile.children == 0) return;
-    for (int child = 0; child < 2; ++child)
-        if (ResidentTile* const below = find(cell_code(tile.tile->root, local).child(child))) unsettle(*below, 0);
+    for (unsigned k = 2 * local - tile_cells; k < 2 * local + 2 - tile_cells; ++k)
+        if (tile.tile->child_bound.has(k))
+            if (ResidentTile* const below = tile.below[tile.tile->child_bound.index(k)]) unsettle(*below, 0);
 }
 
 std::vector<LocationCode> ResidentSet::take_changes() {
@@ -195,9 +230,9 @@ void ResidentSet::place(const Placement& placement, unsigned threads) {
     for (ResidentTile* const t : tiles) {
         bytes_ += memory_of(*t);
         if (t->above)
-            t->above->tile->set_child(position_of(t->tile->root), t->tile.get());
+            t->above->tile->set_child(position_of(t->root), t->tile.get());
         else
-            changes_.push_back(t->tile->root);
+            changes_.push_back(t->root);
     }
 }
 

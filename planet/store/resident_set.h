@@ -18,16 +18,19 @@
 
 namespace planet {
 
-/// A tile in memory, tied to those it depends on.
+/// A tile in memory, tied to those it depends on. Or one that is not there, but that others depend on.
 struct ResidentTile {
-    std::unique_ptr<PlacedTile> tile;
-    std::vector<LocationCode> support;                   ///< see tile_support()
-    ResidentTile* above = nullptr;                       ///< the one that holds the cell of the root
-    std::array<ResidentTile*, 3> beside{};               ///< of the same level, by Side of the root
-    std::size_t children = 0;                            ///< resident tiles below
-    std::uint64_t needed = 0, wanted = 0, followed = 0;  ///< stamps of ViewNeeds
-    std::array<bool, tile_levels> unsettled{};           ///< relative levels to be looked at again
-    bool fresh = true;                                   ///< came since changes were last taken
+    LocationCode root;
+    std::unique_ptr<PlacedTile> tile;                              ///< nullptr: not there
+    std::vector<ResidentTile*> support;                            ///< see tile_support(), there or not
+    ResidentTile* above = nullptr;                                 ///< the one that holds the cell of the root
+    std::array<ResidentTile*, 3> beside{};                         ///< of the same level, by Side of the root
+    std::vector<ResidentTile*> below;                              ///< by ChildBounds::index()
+    std::size_t children = 0;                                      ///< how many of them are there
+    std::size_t supported = 0;                                     ///< how many tiles have it in their support
+    std::array<bool, tile_levels> unsettled{};                     ///< relative levels to be looked at again
+    bool fresh = true;                                             ///< came since changes were last taken
+    std::uint64_t needed = 0, wanted = 0, followed = 0, held = 0;  ///< stamps of ViewNeeds
 };
 
 /// One thread's. While walks run over its tiles it may not be changed.
@@ -36,6 +39,7 @@ class ResidentSet final : public TileSource {
     /// nullptr: not there.
     const PlacedTile* tile(LocationCode root) const override;
     ResidentTile* find(LocationCode root);
+    ResidentTile& face(int face) { return *find(LocationCode::face_root(face)); }
 
     /// Adds a tile; all its diamonds are closed until settle(). The tile above it must be there, itself not.
     ResidentTile& insert(std::unique_ptr<PlacedTile> tile);
@@ -49,12 +53,15 @@ class ResidentSet final : public TileSource {
     /// Places all tiles anew. @param threads 0: one for each processor
     void place(const Placement& placement, unsigned threads = 0);
 
-    std::size_t size() const { return tiles_.size(); }
+    std::size_t size() const { return size_; }
     std::size_t bytes() const { return bytes_; }
     std::vector<ResidentTile*> all();
 
   private:
+    ResidentTile& slot(LocationCode root);
+    void free_if_unused(ResidentTile& tile);
     void tie(ResidentTile& tile);
+    void untie(ResidentTile& tile);
     void unsettle(ResidentTile& tile, int level);
     void settle_level(ResidentTile& tile, int level);
     void settle_side(ResidentTile& tile, unsigned local, ResidentTile* beside);
@@ -64,7 +71,7 @@ class ResidentSet final : public TileSource {
     std::unordered_map<std::uint64_t, ResidentTile> tiles_;
     std::array<std::vector<ResidentTile*>, max_bisection_level> unsettled_;  // by bisection level
     std::vector<LocationCode> changes_;
-    std::size_t bytes_ = 0;
+    std::size_t size_ = 0, bytes_ = 0;
 };
 
 /// The other tiles of a tile's own level that hold an ancestor of one of its diamonds. Where these, the tiles above

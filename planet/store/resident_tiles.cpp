@@ -157,14 +157,14 @@ void ResidentTiles::keep_within_limit() {
     const auto last = [](const ResidentTile* t) { return std::max(t->needed, t->wanted); };
     std::vector<ResidentTile*> free;
     for (ResidentTile* t : set_.all())
-        if (t->tile->root.bisection_level() > 0 && !is_held(*t)) free.push_back(t);
+        if (t->root.bisection_level() > 0 && !is_held(*t)) free.push_back(t);
     // A tile is needed whenever one below it is: of equals, the deeper goes first.
     std::sort(free.begin(), free.end(), [&](const ResidentTile* a, const ResidentTile* b) {
-        return last(a) != last(b) ? last(a) < last(b) : b->tile->root < a->tile->root;
+        return last(a) != last(b) ? last(a) < last(b) : b->root < a->root;
     });
     for (const ResidentTile* t : free) {
         if (set_.bytes() <= limit) break;
-        if (t->children == 0) set_.erase(t->tile->root);
+        if (t->children == 0) set_.erase(t->root);
     }
 }
 
@@ -180,7 +180,8 @@ std::span<const LocationCode> ResidentTiles::settle(const SegmentView& view) {
         const auto changes = update(view);
         all.insert(all.end(), changes.begin(), changes.end());
         if (residency_.pending == 0) break;
-        loader_.wait();
+        // Many at once: every update walks the whole view.
+        loader_.wait(1 + residency_.pending / 2);
     }
     changes_ = std::move(all);
     return changes_;

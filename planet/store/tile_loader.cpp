@@ -42,9 +42,10 @@ std::vector<LoadedTile> TileLoader::take() {
     return std::exchange(loaded_, {});
 }
 
-void TileLoader::wait() {
+void TileLoader::wait(std::size_t tiles) {
     std::unique_lock lock(mutex_);
-    loaded_or_idle_.wait(lock, [&] { return !loaded_.empty() || failure_ || (waiting_.empty() && loading_ == 0); });
+    loaded_or_idle_.wait(lock,
+                         [&] { return loaded_.size() >= tiles || failure_ || (waiting_.empty() && loading_ == 0); });
 }
 
 std::size_t TileLoader::on_their_way() const {

@@ -44,8 +44,8 @@ class TileLoader {
     void request(std::vector<TileRequest> wanted);
     /// What has been loaded since the last time.
     std::vector<LoadedTile> take();
-    /// Returns once take() has something to give, or nothing is requested any more.
-    void wait();
+    /// Returns once take() has this many to give or throws, or nothing more is on its way.
+    void wait(std::size_t tiles = 1);
     /// How many tiles are requested or being loaded.
     std::size_t on_their_way() const;
 

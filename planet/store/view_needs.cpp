@@ -33,9 +33,8 @@ unsigned position_of(LocationCode root) {
 void ViewNeeds::add(const SegmentView& view) {
     view_ = &view;
     for (int face = 0; face < face_count; ++face) {
-        ResidentTile& tile = *resident_.find(LocationCode::face_root(face));
-        follow(tile);
-        visit(tile, 1, false);
+        follow(resident_.face(face));
+        visit(resident_.face(face), 1, false);
     }
 }
 
@@ -44,7 +43,7 @@ void ViewNeeds::visit(ResidentTile& tile, unsigned i, bool in_segment) {
     if (!tile.tile->has_child_below(i)) return;
     const SplitRecord record = opened(tile.tile->split[i]);
     if (!view_->test(record) || (!in_segment && hidden(record))) return;
-    in_segment = in_segment || ends_patch(record, cell_code(tile.tile->root, i).bisection_level());
+    in_segment = in_segment || ends_patch(record, tile.root.bisection_level() + relative_level(i));
     visit(tile, 2 * i, in_segment);
     visit(tile, 2 * i + 1, in_segment);
 }
@@ -53,12 +52,11 @@ void ViewNeeds::visit_below(ResidentTile& tile, unsigned position, bool in_segme
     // Hidden or not: a segment may end here, and the tile says whether it is in view.
     const SplitRecord bound = tile.tile->child_bound[position];
     if (!view_->test(bound)) return;
-    const LocationCode root(tile.tile->root.bits() << tile_levels | position);
-    if (ResidentTile* const below = resident_.find(root)) {
+    if (ResidentTile* const below = tile.below[tile.tile->child_bound.index(position)]) {
         follow(*below);
         visit(*below, 1, in_segment);
     } else {
-        miss(root, bound);
+        miss(LocationCode(tile.root.bits() << tile_levels | position), bound);
     }
 }
 
@@ -66,23 +64,31 @@ void ViewNeeds::follow(ResidentTile& tile) {
     if (tile.followed == mark_) return;
     tile.followed = mark_;
     tile.*stamp_ = mark_;
-    for (const LocationCode root : tile.support) hold(root);
+    for (ResidentTile* const support : tile.support) hold(*support);
     if (tile.above) follow(*tile.above);
 }
 
 // Holds a tile that others depend on, if its root is split: what depends on it is not, otherwise.
-void ViewNeeds::hold(LocationCode root) {
-    ResidentTile* const tile = resident_.find(root);
-    if (tile && tile->*stamp_ == mark_) return;
-    if (root.bisection_level() > 0) {
-        ResidentTile* const above = resident_.find(root_above(root));
-        if (!above) return hold(root_above(root));
-        const SplitRecord bound = above->tile->child_bound[position_of(root)];
+void ViewNeeds::hold(ResidentTile& tile) {
+    if (tile.held == mark_) return;
+    tile.held = mark_;
+    if (tile.root.bisection_level() > 0) {
+        ResidentTile* const above = tile.tile ? tile.above : resident_.find(root_above(tile.root));
+        if (!above) return hold(root_above(tile.root));
+        const SplitRecord bound = above->tile->child_bound[position_of(tile.root)];
         if (!view_->test(bound)) return;
         follow(*above);
-        if (!tile) return miss(root, bound);
+        if (!tile.tile) return miss(tile.root, bound);
     }
-    tile->*stamp_ = mark_;
+    tile.*stamp_ = mark_;
+}
+
+// A tile that is not there.
+void ViewNeeds::hold(LocationCode root) {
+    ResidentTile* const above = resident_.find(root_above(root));
+    if (!above) return hold(root_above(root));
+    const SplitRecord bound = above->tile->child_bound[position_of(root)];
+    if (view_->test(bound)) miss(root, bound);
 }
 
 void ViewNeeds::miss(LocationCode root, const SplitRecord& bound) {

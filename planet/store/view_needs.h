@@ -37,6 +37,7 @@ class ViewNeeds {
     void visit(ResidentTile& tile, unsigned i, bool in_segment);
     void visit_below(ResidentTile& tile, unsigned position, bool in_segment);
     void follow(ResidentTile& tile);
+    void hold(ResidentTile& tile);
     void hold(LocationCode root);
     void miss(LocationCode root, const SplitRecord& bound);
     bool hidden(const SplitRecord& record) const;

@@ -130,8 +130,7 @@ void expect_rule(ResidentSet& set) {
     Existence existence(set);
     for (const ResidentTile* t : set.all())
         for (unsigned i = 1; i < 1u << t->tile->depth; ++i)
-            ASSERT_EQ(t->tile->is_open(i), existence.of(cell_code(t->tile->root, i)))
-                << to_string(t->tile->root) << " " << i;
+            ASSERT_EQ(t->tile->is_open(i), existence.of(cell_code(t->root, i))) << to_string(t->root) << " " << i;
 }
 
 /// Adds or takes out tiles at random, keeping parents. @return whether anything was done
@@ -199,7 +198,7 @@ TEST(ResidentSet, ChangesNameEveryCellThatIsSplitOtherwise) {
         std::set<LocationCode> open;
         for (const ResidentTile* t : set.all())
             for (unsigned i = 1; i < 1u << t->tile->depth; ++i)
-                if (t->tile->is_open(i)) open.insert(cell_code(t->tile->root, i));
+                if (t->tile->is_open(i)) open.insert(cell_code(t->root, i));
         return open;
     };
     std::set<LocationCode> before = open_cells();
