@@ -109,6 +109,16 @@ void SegmentBuilder::build(const PlacedCell& cell, LocationCode half, std::vecto
     });
 }
 
+// The apex is the vertex that the leaf or its sibling will most likely add.
+inline int SegmentBuilder::push(const PlacedTile& t, unsigned i, int level) {
+    const std::uint16_t apex = layout_.corners[i][2];
+    __builtin_prefetch(&t.position[apex]);
+    __builtin_prefetch(&t.height[apex]);
+    stack_.reserve_more(1);
+    stack_.push({&t, static_cast<std::uint16_t>(i), static_cast<std::uint8_t>(level)});
+    return 1;
+}
+
 // find... return how many leaves a cell has left on the stack, at most segment_leaves, or `several` segments.
 int SegmentBuilder::find(const PlacedTile& t, unsigned i, int level) {
     if (i >> t.depth) return find_below(t, i, level);
@@ -143,12 +153,6 @@ int SegmentBuilder::find_below(const PlacedTile& t, unsigned i, int level) {
     return push(t, i, level);
 }
 
-int SegmentBuilder::push(const PlacedTile& t, unsigned i, int level) {
-    stack_.reserve_more(1);
-    stack_.push({&t, static_cast<std::uint16_t>(i), static_cast<std::uint8_t>(level)});
-    return 1;
-}
-
 /// Makes a segment of the uppermost leaves of the stack.
 void SegmentBuilder::finish(PlacedCell root, int leaves) {
     if (root.local >> root.tile->depth && leaves > 1)  // not a leaf: the tile below has its record
@@ -173,9 +177,10 @@ void SegmentBuilder::make(BuiltSegment& segment) {
     if (view_->morph) morphs_.reserve_more(segment.leaves + 2);
     first_vertex_ = segment.first_vertex;
     slack_ = Slack(test_.eye);
+    leaf_before_.tile = nullptr;
     damaged_ = false;
     ratio_max_ = deviation_max_ = 0;
-    worth_ = std::numeric_limits<double>::infinity();
+    worth_ = least_reach_ = std::numeric_limits<double>::infinity();
     write_strip(segment);
 
     const PlacedTile& t = *segment.root.tile;
@@ -187,6 +192,7 @@ void SegmentBuilder::make(BuiltSegment& segment) {
     segment.damaged = damaged_;
     segment.slack = slack_.metres();
     segment.ratio_max = ratio_max_;
+    segment.least_reach = least_reach_;
     segment.deviation_max = deviation_max_;
 }
 
@@ -231,35 +237,46 @@ std::uint32_t SegmentBuilder::add(const PlacedTile& t, std::uint16_t vertex) {
     return static_cast<std::uint32_t>(vertices_.size() - 1 - first_vertex_);
 }
 
+// A diamond that is not split: its slack, if it could be, and its deviation over what the test allows at the nearest point
+// below it.
+inline void SegmentBuilder::certify(const SplitRecord& s, bool can_split) {
+    if (s.deviation == 0) return;
+    const double deviation = std::abs(static_cast<double>(s.deviation)), scaled = test_.K * deviation;
+    deviation_max_ = std::max(deviation_max_, deviation);
+    const double d2 = test_.distance2(s), r = static_cast<double>(s.radius);
+    if (can_split)
+        slack_.add(d2, r + scaled);
+    else
+        least_reach_ = std::min(least_reach_, std::max(std::sqrt(d2) - r, 0.0));
+    // scaled / (d - r) > ratio_max without a root or a division: most leaves are not the worst.
+    if (const double within = scaled * worth_ + r; d2 < within * within) [[unlikely]] {
+        ratio_max_ = std::max(ratio_max_, scaled / std::max(std::sqrt(d2) - r, 0.0));
+        worth_ = 1 / ratio_max_;
+    }
+}
+
 // The leaf must go on to fail its test, and its parent to pass: then all above it pass, as the test is nested.
 void SegmentBuilder::certify(const Leaf& leaf, bool whole_segment) {
     const PlacedTile& t = *leaf.tile;
     const unsigned i = leaf.local;
     damaged_ = damaged_ || t.damaged;
-    if (!whole_segment) slack_.add(test_, t.split[i >> 1]);
+    const bool sibling_was_leaf = (i & 1) != 0 && leaf_before_.tile == &t && leaf_before_.local == i - 1;
+    leaf_before_ = leaf;
+    if (!whole_segment && !sibling_was_leaf) slack_.add(test_, t.split[i >> 1]);
     if (!(i >> t.depth)) {
-        slack_.add(test_, t.split[i]);
-        certify(t.split[i]);
+        const SplitRecord s = t.split[i];
+        certify(s, s.deviation > 0);
     } else if (t.depth == tile_levels && !t.child_bound.empty()) {
-        const SplitRecord bound = t.child_bound[i - tile_cells];
-        slack_.add(test_, bound);
+        const SplitRecord& bound = t.child_bound[i - tile_cells];
         const PlacedTile* below = t.child(*tiles_, i - tile_cells, test_);
-        if (below) slack_.add(test_, below->split[1]);
-        certify(below ? below->split[1] : bound);
+        if (test_(bound)) {
+            slack_.add(test_, bound);
+            const SplitRecord s = below ? below->split[1] : bound;
+            certify(s, below && s.deviation > 0);
+        } else {
+            certify(bound, true);
+        }
         damaged_ = damaged_ || (below && below->damaged);
-    }
-}
-
-// An unsplit diamond: its deviation over what the test allows at the nearest point below it.
-void SegmentBuilder::certify(const SplitRecord& s) {
-    if (s.deviation == 0) return;
-    const double deviation = std::abs(static_cast<double>(s.deviation)), scaled = test_.K * deviation;
-    deviation_max_ = std::max(deviation_max_, deviation);
-    const double d2 = test_.distance2(s), r = static_cast<double>(s.radius);
-    // scaled / (d - r) > ratio_max without a root or a division: most leaves are not the worst.
-    if (const double within = scaled * worth_ + r; d2 < within * within) [[unlikely]] {
-        ratio_max_ = std::max(ratio_max_, scaled / std::max(std::sqrt(d2) - r, 0.0));
-        worth_ = 1 / ratio_max_;
     }
 }
 

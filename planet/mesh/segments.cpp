@@ -97,7 +97,6 @@ void Segments::clear() {
     listed_ = false;
     vertex_places_.clear();
     index_places_.clear();
-    leaf_places_.clear();
     total_leaves_ = 0;
 }
 
@@ -164,7 +163,7 @@ void Segments::build(const TileSource& tiles, Job& job, SegmentBuilder& builder)
         if (tree_.odometer() < piece.expires) {
             add({.cell = piece.segment.root, .leaves = piece.segment.leaves, .piece = k});
         } else {
-            builder.build(piece.built.root, half, built);
+            builder.build(piece.root, half, built);
             add_built();
         }
     }
@@ -184,7 +183,7 @@ void Segments::place(std::span<Job> jobs, std::size_t threads) {
     vertices_.resize(vertex_places_.size());
     if (view_.morph) morphs_.resize(vertex_places_.size());
     indices_.resize(index_places_.size());
-    leaf_levels_.resize(leaf_places_.size());
+    leaf_levels_.resize(index_places_.size());
     constexpr std::size_t run = 16;
     parallel_for((jobs.size() + run - 1) / run, static_cast<unsigned>(threads), [&](std::size_t r) {
         for (const Job& job : jobs.subspan(r * run, std::min(run, jobs.size() - r * run)))
@@ -237,11 +236,25 @@ Segments::Piece Segments::new_piece(const BuiltSegment& b) {
                         .first_index = indices.first,
                         .index_count = indices.count,
                         .leaves = b.leaves,
-                        .first_leaf = leaf_places_.allocate(b.leaves).first,
+                        .first_leaf = indices.first,
                         .detailed = b.detailed},
-            .built = b,
+            .sphere = b.sphere,
             .expires = tree_.expiry(b.slack),
-            .eye = view_.test.eye};
+            .ratio_max = b.ratio_max,
+            .least_reach = b.least_reach,
+            .deviation_max = b.deviation_max,
+            .odometer = tree_.odometer(),
+            .root = b.root,
+            .damaged = b.damaged};
+}
+
+// While the slack holds, what could be split needs not: its ratio is at most 1. What lacks a tile has come nearer by what
+// the eye went at most, and the nearest by the largest factor.
+double Segments::ratio_of(const Piece& p) const {
+    const double gone = tree_.odometer() - p.odometer;
+    if (gone == 0 || p.ratio_max == 0) return p.ratio_max;
+    if (p.least_reach == infinity) return 1;
+    return gone < p.least_reach ? std::max(1.0, p.ratio_max * (p.least_reach / (p.least_reach - gone))) : infinity;
 }
 
 void Segments::list() {
@@ -252,16 +265,14 @@ void Segments::list() {
         for (const Piece& p : blocks_[tree_.node(i).content].pieces) {
             sums_.block_leaves += p.segment.leaves;
             unsigned still_open = open;
-            if (culling.hidden(p.built.sphere.centre, p.built.sphere.radius, still_open)) continue;
+            if (culling.hidden(p.sphere.centre, p.sphere.radius, still_open)) continue;
             segments_.push_back(p.segment);
             sums_.leaves += p.segment.leaves;
             sums_.vertices += p.segment.vertex_count;
             sums_.indices += p.segment.index_count;
-            sums_.damaged = sums_.damaged || p.built.damaged;
-            const double ratio = p.built.ratio_max;
-            const bool exact = ratio == 0 || p.eye == view_.test.eye;
-            sums_.ratio_max = std::max(sums_.ratio_max, exact ? ratio : ratio <= 1 ? 1 : infinity);
-            sums_.deviation_max = std::max(sums_.deviation_max, p.built.deviation_max);
+            sums_.damaged = sums_.damaged || p.damaged;
+            sums_.ratio_max = std::max(sums_.ratio_max, ratio_of(p));
+            sums_.deviation_max = std::max(sums_.deviation_max, p.deviation_max);
         }
     kept_ = total_leaves_ - sums_.block_leaves;
 }
@@ -278,7 +289,6 @@ void Segments::release_dropped() {
 void Segments::release(const Segment& s) {
     vertex_places_.free({s.first_vertex, s.vertex_count});
     index_places_.free({s.first_index, s.index_count});
-    leaf_places_.free({s.first_leaf, s.leaves});
     total_leaves_ -= s.leaves;
 }
 

@@ -23,7 +23,7 @@ struct Segment {
     LocationCode patch;
     std::uint32_t first_vertex, vertex_count, first_index, index_count;
     std::uint32_t leaves;
-    std::uint32_t first_leaf;  ///< into leaf_levels()
+    std::uint32_t first_leaf;  ///< into leaf_levels(); has room for as many as there are indices
     bool detailed;             ///< holds tiles rooted at SegmentView::detail_level or deeper
 };
 
@@ -70,7 +70,8 @@ class Segments {
     /// Whether a damaged tile is among those looked at.
     bool damaged() const { return sums_.damaged; }
     /// The certificate: the largest projected deviation of the picture is at most max_pixel_deviation times this. Exact
-    /// after build(); of segments built for another eye update() only knows that it is at most 1.
+    /// after build(); of segments built for another eye update() only knows that it is at most 1, and of what lacks a
+    /// tile, by how much it can have grown.
     double ratio_max() const { return sums_.ratio_max; }
     /// The largest deviation of a leaf from the finest surface, metres, exaggerated.
     double deviation_max_m() const { return sums_.deviation_max; }
@@ -82,9 +83,12 @@ class Segments {
     /// A segment with a place.
     struct Piece {
         Segment segment;
-        BuiltSegment built;
+        Sphere sphere;
         double expires;  ///< see SegmentTree
-        glm::dvec3 eye;  ///< for which it was built
+        double ratio_max, least_reach, deviation_max;
+        double odometer;  ///< when it was built
+        PlacedCell root;
+        bool damaged;
     };
     /// The segments of a patch's half, in Sierpinski order.
     struct Block {
@@ -105,6 +109,7 @@ class Segments {
     void build(const TileSource& tiles, Job& job, SegmentBuilder& builder) const;
     void place(std::span<Job> jobs, std::size_t threads);
     void place(Job& job);
+    double ratio_of(const Piece& piece) const;
     Piece new_piece(const BuiltSegment& b);
     void list();
     void release_dropped();
@@ -119,7 +124,7 @@ class Segments {
     std::vector<std::uint32_t> free_blocks_;
     std::vector<std::unique_ptr<SegmentBuilder>> builders_;
 
-    RangeAllocator vertex_places_, index_places_, leaf_places_;
+    RangeAllocator vertex_places_, index_places_;  // levels have the place of indices
     GrowingArray<SegmentVertex> vertices_;
     GrowingArray<MorphVertex> morphs_;
     GrowingArray<std::uint32_t> indices_;
