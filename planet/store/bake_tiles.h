@@ -3,7 +3,6 @@
 // radii start, what resampling lost, bytes.
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <vector>
