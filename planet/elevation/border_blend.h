@@ -28,6 +28,8 @@ class BorderBlend {
     /// Metres to add to the coarser field at a unit normal. 0 beyond the reach of every point.
     double operator()(const glm::dvec3& normal) const;
 
+    std::size_t bytes() const { return sizeof *this + points_.size() * sizeof(Point) + nodes_.size() * sizeof(Node); }
+
   private:
     struct Node {
         glm::dvec3 centre;                 // mean of its points

@@ -88,7 +88,7 @@ void angles_from_normals(std::span<const glm::dvec3> normals, std::span<double> 
     }
 }
 
-SampleMap::SampleMap(const Raster& raster)
+SampleMap::SampleMap(const RasterHeader& raster)
     : size_(raster.width, raster.height), grid_(raster.grid), transform_(raster.transform) {
     assert(!raster.plain);
     middle_ = 0.5 * (size_ - 1.0);

@@ -16,7 +16,7 @@ namespace planet {
 /// degrees; others through their CRS, to 1/256 of a sample (patch_map.h). Safe from several threads.
 class SampleMap {
   public:
-    explicit SampleMap(const Raster& raster);
+    explicit SampleMap(const RasterHeader& raster);
     SampleMap(const SampleMap&) = delete;
     SampleMap& operator=(const SampleMap&) = delete;
 

@@ -252,8 +252,12 @@ void TileMaker::find_lacks_below(LocationCode root) {
 void TileMaker::set_own(TileRecords& records, bool inner) {
     deviation_.resize(exists_.size());
     radius_.resize(exists_.size());
-    own_deviation(lattice_, deviation_);
-    corner_radii(lattice_, exists_, inner, lacks_below_, radius_);
+    if (inner) {
+        own_deviation(lattice_, deviation_);
+        corner_radii(lattice_, exists_, true, lacks_below_, radius_);
+    } else {
+        measure_leaf(lattice_, exists_, deviation_, radius_);
+    }
     records.depth = lattice_.depth();
     records.inner = inner;
     std::copy(lattice_.rounded().begin(), lattice_.rounded().end(), records.position.begin());
@@ -263,10 +267,13 @@ void TileMaker::set_own(TileRecords& records, bool inner) {
 // This tile's vertices against every cell that holds its root.
 void TileMaker::measure_above(LocationCode root, InnerTile* above) {
     find_cells_above(root, above);
+    const TileHull hull(lattice_);
     for (const CellAbove& cell : above_) {
         if (!cell.exists) continue;
-        raise_to(cell.holder->records->deviation[cell.vertex],
-                 certified_deviation(deviation_from(lattice_, cell.plane)));
+        float& deviation = cell.holder->records->deviation[cell.vertex];
+        const float known = std::atomic_ref(deviation).load(std::memory_order_relaxed);
+        if (!hull.may_exceed(cell.plane, known)) continue;
+        raise_to(deviation, certified_deviation(deviation_from(lattice_, cell.plane)));
         cell.holder->changed = true;
     }
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,7 +17,7 @@ namespace planet {
 
 class SqliteFile;
 
-inline constexpr int store_format_version = 1;
+inline constexpr int store_format_version = 2;
 
 /// The options of a bake that determine what is in its store. See BakeOptions.
 struct BakeSettings {
@@ -86,7 +87,8 @@ class ElevationStore {
     /// Reads everything: checksums, that listed tiles exist and no others, that deviations and radii are nested, that
     /// tiles hold the same bits on the sides they share and at the corners they inherit, that inner deviations bound
     /// the tile's own vertices.
-    StoreCheck verify() const;
+    /// @param progress told the share that is done, 0..1, from time to time
+    StoreCheck verify(const std::function<void(double)>& progress = {}) const;
 
   private:
     struct Open;

@@ -8,6 +8,7 @@
 #include "render/app/progress.h"
 #include "render/app/render_options.h"
 #include "render/app/report.h"
+#include "render/app/source_report.h"
 
 namespace render {
 namespace {
@@ -16,17 +17,6 @@ struct Options {
     RenderOptions render;
     std::string json;
 };
-
-nlohmann::ordered_json sources_json(const std::vector<planet::SourceInfo>& sources) {
-    auto list = nlohmann::ordered_json::array();
-    for (const auto& source : sources)
-        list.push_back({{"name", source.name},
-                        {"sha256", source.checksum},
-                        {"crs", source.crs},
-                        {"vertical_datum", planet::name_of(source.datum)},
-                        {"spacing_m", source.spacing_m}});
-    return list;
-}
 
 void fill(Report& report, const RenderOptions& options, const PictureReport& picture) {
     report.set("output", options.output.native());

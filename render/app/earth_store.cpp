@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include "planet/error.h"
-#include "planet/store/bake.h"
 #include "render/app/data_path.h"
 
 namespace render {
@@ -14,11 +13,7 @@ using planet::ElevationStore;
 
 planet::BakeOptions options_for(const Earth& earth, const std::function<void(std::string_view, double)>& progress) {
     planet::BakeOptions options;
-    options.undulation = [geoid = earth.geoid](std::span<const glm::dvec3> normals,
-                                               std::span<planet::GeoidUndulation> out) {
-        geoid->undulations(normals, out);
-    };
-    options.undulation_name = earth.geoid->description();
+    set_geoid(options, earth.geoid);
     options.progress = progress;
     options.memory_bytes = std::size_t{4} << 30;
     return options;
@@ -41,6 +36,14 @@ std::shared_ptr<const ElevationStore> bake_to(const std::filesystem::path& file,
 }
 
 }  // namespace
+
+void set_geoid(planet::BakeOptions& options, std::shared_ptr<const planet::Geoid> geoid) {
+    options.undulation_name = geoid->description();
+    options.undulation = [geoid = std::move(geoid)](std::span<const glm::dvec3> normals,
+                                                    std::span<planet::GeoidUndulation> out) {
+        geoid->undulations(normals, out);
+    };
+}
 
 std::shared_ptr<const ElevationStore> open_earth_store(const EarthSources& sources, LazyEarth& earth,
                                                        ChecksumIndex& index,
