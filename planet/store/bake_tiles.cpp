@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
-#include <ctime>
 
 #include "planet/error.h"
 #include "planet/store/ladder.h"
@@ -37,22 +37,12 @@ void report_above(const FrontierTile& tile, float min_height, float max_height) 
         std::max(records.radius[v], certified_radius(radius_over(records.position[v], tile.split_position, radius)));
 }
 
-namespace {
-
-// Of this thread: what it means does not depend on what else the machine does.
-double processor_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-}  // namespace
-
 template <class Work>
 void TileMaker::timed(BakeStep step, Work work) {
-    const double begin = processor_seconds();
+    const auto begin = std::chrono::steady_clock::now();
     work();
-    seconds_[static_cast<std::size_t>(step)] += processor_seconds() - begin;
+    seconds_[static_cast<std::size_t>(step)] +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 std::unique_ptr<InnerTile> TileMaker::open(LocationCode root, InnerTile* above) {
@@ -71,7 +61,7 @@ std::unique_ptr<InnerTile> TileMaker::open(LocationCode root, InnerTile* above) 
         find_lacks_below(root);
         set_own(*inner->records, true);
         own_height_range(tile, exists_);
-        measure_above(root, above);
+        measure_above();
     });
     std::vector<std::uint8_t> has_tile_below(tile_cells);
     for (const LocationCode below : scene_.plan.below(root)) {
@@ -100,7 +90,7 @@ std::unique_ptr<FrontierTile> TileMaker::measure(LocationCode root, InnerTile* a
     timed(BakeStep::deviation, [&] {
         lattice_.set_positions(scene_.scale.placement, tile_.height, tile_.undulation, exists_);
         set_own(*records, false);
-        measure_above(root, above);
+        measure_above();
     });
     timed(BakeStep::settling, [&] { records->settle(tile->theirs, tile->mine); });
     timed(BakeStep::certifying, [&] {
@@ -150,8 +140,8 @@ std::vector<std::uint8_t> TileMaker::encode(FrontierTile& tile) {
     } else {
         restore(tile);
         own_height_range(tile_, exists_);
-        baked_.tile = tile_;
-        baked_.exists = exists_;
+        std::swap(baked_.tile, tile_);
+        baked_.exists.assign(exists_.begin(), exists_.end());
         baked_.gain.resize(tile.mine.size());
         for (std::size_t k = 0; k < tile.mine.size(); ++k) {
             const SideSteps settled = tile.steps(k);
@@ -182,7 +172,8 @@ void TileMaker::restore(const FrontierTile& tile) {
     tile_.root = tile.root;
     tile_.depth = tile.depth;
     tile_.resampling = tile.resampling;
-    tile_.height = tile.height;
+    tile_.height.assign(tile.height.begin(), tile.height.end());
+    tile_.child_exists.reset();
     exists_.resize(std::size_t{1} << tile.depth);
     existence_.of_tile(tile.root, exists_);
     if (!scene_.scale.has_undulation) return;
@@ -192,14 +183,22 @@ void TileMaker::restore(const FrontierTile& tile) {
     interpolate_undulations(tile.root, tile.depth, tile_.undulation);
 }
 
+// The corners of a tile below the last of above_.
+Corners TileMaker::root_corners(LocationCode root) const {
+    if (above_.empty()) return face_corners(root.face());
+    const Corners& up = above_.back().corners;
+    return child_corners(up, split_vertex(up), root.child_index());
+}
+
 // Normals, heights and undulations. The root's corners are vertices of the tile above: taken from there.
-void TileMaker::sample(Tile& tile, const InnerTile* above) {
-    lattice_.set_normals(corners(tile.root), tile.depth);
+void TileMaker::sample(Tile& tile, InnerTile* above) {
+    find_cells_above(tile.root, above);
+    lattice_.set_normals(root_corners(tile.root), tile.depth);
     normals_.resize(lattice_.size());
     for (std::size_t v = 0; v < normals_.size(); ++v) normals_[v] = lattice_.normal(v);
     tile.height.resize(normals_.size());
     scene_.field.heights(normals_, tile.height);
-    for (std::size_t v = 0; v < tile.height.size(); ++v) tile.height[v] = quantized(tile.height[v], normals_[v]);
+    quantize(tile.height);
     if (above) {
         const auto& corner = tile_layout().corners[tile_cells | (tile.root.bits() & (tile_cells - 1))];
         for (std::size_t v = 0; v < 3; ++v) tile.height[v] = above->tile.height[corner[v]];
@@ -207,16 +206,27 @@ void TileMaker::sample(Tile& tile, const InnerTile* above) {
     if (scene_.scale.has_undulation) sample_undulations(tile, above);
 }
 
-float TileMaker::quantized(float height, const glm::dvec3& normal) const {
-    if (std::isnan(height)) return 0.0f;
-    const double quantum = scene_.scale.quantum_m;
-    const double quanta = std::nearbyint(static_cast<double>(height) / quantum);
-    if (std::abs(quanta) <= static_cast<double>(largest_height_quanta)) return static_cast<float>(quanta * quantum);
-    const Geodetic g = geodetic_from_normal(normal);
+// To whole quanta; NaN is 0.
+void TileMaker::quantize(std::span<float> heights) const {
+    const double quantum = scene_.scale.quantum_m, limit = static_cast<double>(largest_height_quanta);
+    bool fits = true;
+    for (float& height : heights) {
+        const double quanta = std::nearbyint(static_cast<double>(height) / quantum);
+        fits &= !(std::abs(quanta) > limit);
+        height = quanta == quanta ? static_cast<float>(quanta * quantum) : 0.0f;
+    }
+    if (!fits) refuse_heights(heights);
+}
+
+void TileMaker::refuse_heights(std::span<const float> heights) const {
+    const double limit = static_cast<double>(largest_height_quanta) * scene_.scale.quantum_m;
+    const auto too_high = [&](float h) { return std::abs(static_cast<double>(h)) > limit; };
+    const auto v = std::find_if(heights.begin(), heights.end(), too_high);
+    const Geodetic g = geodetic_from_normal(normals_[static_cast<std::size_t>(v - heights.begin())]);
     throw Error(Fault::bad_data, "bake",
                 "the height at " + std::to_string(g.latitude / degrees) + "," + std::to_string(g.longitude / degrees) +
-                    " is " + std::to_string(height) + " m",
-                "at most " + std::to_string(static_cast<double>(largest_height_quanta) * quantum) + " m up or down");
+                    " is " + std::to_string(*v) + " m",
+                "at most " + std::to_string(limit) + " m up or down");
 }
 
 void TileMaker::sample_undulations(Tile& tile, const InnerTile* above) {
@@ -265,8 +275,7 @@ void TileMaker::set_own(TileRecords& records, bool inner) {
 }
 
 // This tile's vertices against every cell that holds its root.
-void TileMaker::measure_above(LocationCode root, InnerTile* above) {
-    find_cells_above(root, above);
+void TileMaker::measure_above() {
     const TileHull hull(lattice_);
     for (const CellAbove& cell : above_) {
         if (!cell.exists) continue;
