@@ -17,6 +17,7 @@ struct BakeCommand {
     bool over_earth = false;                   ///< the shipped Earth lies below them; else H = 0
     std::filesystem::path output;
     bool resume = false, replace = false;
+    int threads = 0;
     planet::BakeOptions bake;
     /// Where there is no source the sea is drawn by the least cells: at level 18 their middle is some 20 m low. Nothing:
     /// that, or the finest level if it is coarser.

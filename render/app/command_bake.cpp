@@ -96,6 +96,10 @@ void add_store_options(CLI::App& command, BakeCommand& o) {
     add_value(command, "--quantum", "METRES",
               "Step of heights, a power of two, 1/256 to 64 m [0.25, less below 30 m spacing]",
               [&](Where where, const std::string& text) { o.bake.quantum_m = quantum_from_text(where, text); });
+    add_value(command, "--threads", "COUNT", "1 to 256; 0: as many as there are processors [0]",
+              [&](Where where, const std::string& text) {
+                  o.threads = static_cast<int>(parse_whole(where, text, 0, 256));
+              });
     add_value(command, "--memory", "BYTES", "Limit of the memory used, e.g. 512MiB [1GiB]",
               [&](Where where, const std::string& text) {
                   o.bake.memory_bytes = parse_memory(where, text, least_memory, most_memory);

@@ -59,25 +59,27 @@ void height(const Options& options) {
     const planet::OrthometricHeight H =
         orthometric ? planet::OrthometricHeight{found} : planet::EllipsoidalHeight{found} - N;
     const planet::EllipsoidalHeight h = H + N;
+    // Only tiles on the way down to the place have been read.
+    const auto damage = field.cache().damage();
+    for (const auto& line : damage) std::cerr << "octaglobe: warning: " << line << "; a coarser one stands in for it\n";
     const double bound = field.bound_at(normal).total();
-    const bool answered = bound > 0;  // no surface of plane cells is that near to samples
-    for (const auto& line : field.cache().damage()) std::cerr << "octaglobe: warning: " << line << '\n';
+    const bool has_source = bound > 0;  // no surface of plane cells is that near to samples
+    const bool bounded = has_source && damage.empty();
     std::cout << fixed(H.m, 2) << " m above EGM96, " << fixed(h.m, 2) << " m above the ellipsoid; "
-              << (!answered              ? "no source there"
-                  : std::isfinite(bound) ? "samples there within " + four_digits(bound) + " m of the surface"
-                                         : "no bound, the tile there is damaged")
+              << (bounded          ? "samples there within " + four_digits(bound) + " m of the surface"
+                  : damage.empty() ? "no source there"
+                                   : "no bound, a tile there is damaged")
               << '\n';
     report.set("latitude_deg", place.latitude / degrees);
     report.set("longitude_deg", place.longitude / degrees);
     report.set("height_m", H.m);
-    report.set("height_bound_m", answered ? nlohmann::ordered_json(bound) : nlohmann::ordered_json());
-    report.set("has_source", answered);
+    report.set("height_bound_m", bounded ? nlohmann::ordered_json(bound) : nlohmann::ordered_json());
     report.set("ellipsoidal_height_m", h.m);
     report.set("geoid_undulation_m", N.m);
     report.set("vertical_datum", planet::name_of(planet::VerticalDatum::egm96));
     report.set("crs", "EPSG:4326");
     report.set("sources", sources_json(field.sources()));
-    report.set("damaged_tiles_met", !field.cache().damage().empty());
+    report.set("damaged", !damage.empty());
     report.write();
 }
 

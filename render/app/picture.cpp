@@ -171,7 +171,6 @@ class Painter {
         report_.deviation_max_m = std::max(report_.deviation_max_m, segments.deviation_max_m());
         report_.pixel_deviation_max =
             std::max(report_.pixel_deviation_max, segments.ratio_max() * options_.max_pixel_deviation);
-        report_.damaged = report_.damaged || segments.damaged();
     }
 
     void paint_part(const PicturePart& part, std::vector<std::uint8_t>& band) {
@@ -207,6 +206,7 @@ class Painter {
 
     void fill_report() {
         report_.tiles = surface_.tiles.count();
+        report_.damage = surface_.field.cache().damage();
         report_.eye_height_m = planet::height_from_ecef(wgs84, camera_.eye).m;
         report_.crs = "EPSG:4978";
         report_.vertical_datum = planet::name_of(surface_.store->metadata().datum);

@@ -43,7 +43,11 @@ class BallTiles final : public TileSource {
     /// Roots of tiles that are not there for now.
     std::set<std::uint64_t> away;
     /// The tile forgets which tiles are below it. Its address stays.
-    void remake(LocationCode root) { *tiles_.at(root.bits()) = std::move(*make(root)); }
+    void remake(LocationCode root) {
+        PlacedTile* old = tiles_.at(root.bits()).get();
+        std::destroy_at(old);
+        std::construct_at(old, std::move(*make(root)));
+    }
 
     std::size_t tile_count() const { return tiles_.size(); }
 

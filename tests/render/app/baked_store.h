@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "planet/elevation/sha256.h"
 #include "planet/store/sqlite_file.h"
 #include "planet/store/store_field.h"
 #include "tests/render/app/program_process.h"
@@ -16,7 +17,7 @@ namespace render {
 /// Bakes in a folder and returns the report. @param arguments without --json, -o is store.octa unless given, and the
 /// planet without sources as coarse as can be, which is quick.
 inline nlohmann::json bake(const ScratchFolder& folder, std::string arguments) {
-    if (arguments.find("-level") == std::string::npos) arguments += " --least-level 12";
+    if (arguments.find("--least-level") == std::string::npos) arguments += " --least-level 12";
     if (arguments.find("-o ") == std::string::npos) arguments += " -o store.octa";
     const Outcome outcome = run(folder.path(), words("bake " + arguments + " --json bake.json"));
     EXPECT_EQ(outcome.status, 0) << arguments << ": " << outcome.err;
@@ -34,7 +35,7 @@ inline double height_at(const planet::StoreField& field, double latitude, double
     return static_cast<double>(field.height(planet::normal_from_geodetic(latitude * degrees, longitude * degrees)));
 }
 
-/// All rows of all tables, as text, to compare contents.
+/// The checksum of all rows of all tables, to compare contents.
 inline std::string rows_of(const std::filesystem::path& file) {
     planet::SqliteFile database(file, planet::SqliteFile::Access::read);
     std::string rows;
@@ -48,7 +49,9 @@ inline std::string rows_of(const std::filesystem::path& file) {
     add("SELECT key, value FROM metadata ORDER BY key", 2);
     add("SELECT rank, name, checksum, crs, datum, hex(spacing_m) FROM sources ORDER BY rank", 6);
     add("SELECT code, hex(data) FROM tiles ORDER BY code", 2);
-    return rows;
+    planet::Sha256 sum;
+    sum.add(rows.data(), rows.size());
+    return sum.hex();
 }
 
 }  // namespace render
