@@ -184,6 +184,8 @@ void run(BakeCommand& command) {
     }();
     set_geoid(command.bake, geoid);
     command.bake.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };
+    command.bake.resume = command.resume;
+    command.bake.replace = command.replace;
     const planet::BakeReport baked = planet::bake(*field, command.bake, command.output);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     progress.clear();
