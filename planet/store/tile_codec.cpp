@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 
+#include "planet/mesh/saturation.h"
 #include "planet/store/byte_stream.h"
 #include "planet/store/ladder.h"
 #include "planet/store/lattice_code.h"
@@ -107,25 +108,22 @@ struct SideGains {
 
 // What the bake did, from the gains of the sides: own deviations, then saturation from the finest level up.
 void settle_leaf(Tile& tile, std::span<const std::uint8_t> exists, const SideGains& gains, const TileLattice& lattice) {
-    own_deviation(lattice, tile.deviation);
-    corner_radii(lattice, exists, false, {}, tile.radius);
-    const TileLayout& layout = tile_layout();
-    const Saturation s{layout, tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
+    measure_leaf(lattice, exists, tile.deviation, tile.radius);
+    static thread_local TileSaturation saturation;
+    saturation.start(tile.depth, lattice.rounded());
     const auto sides = side_cells(tile.depth);
     std::size_t k = sides.size(), g = gains.deviation.size();
-    for (unsigned first = 1u << (tile.depth - 1); first > 0; first >>= 1) {
-        for (unsigned i = first; i < 2 * first; ++i) s.raise(i);
-        for (unsigned i = first; i < 2 * first; ++i)
-            if (const unsigned beyond = layout.split_neighbor[i]; i < beyond) s.join(i, beyond);
-        for (; k > 0 && sides[k - 1].cell >= first; --k) {
+    for (int level = tile.depth - 1; level >= 0; --level) {
+        saturation.level(level, exists, tile.deviation, tile.radius);
+        for (; k > 0 && sides[k - 1].cell >= 1u << level; --k) {
             const unsigned i = sides[k - 1].cell;
             if (!exists[i]) continue;
             --g;
-            const std::uint64_t d = std::uint64_t{deviation_code(s.deviation[i])} + gains.deviation[g];
-            const std::uint64_t r = std::uint64_t{radius_code(s.radius[i])} + gains.radius[g];
+            const std::uint64_t d = std::uint64_t{deviation_code(tile.deviation[i])} + gains.deviation[g];
+            const std::uint64_t r = std::uint64_t{radius_code(tile.radius[i])} + gains.radius[g];
             if (d >= deviation_codes || r >= radius_codes) throw MalformedBytes("a record is out of range");
-            s.deviation[i] = deviation_from_code(static_cast<unsigned>(d));
-            s.radius[i] = radius_from_code(static_cast<unsigned>(r));
+            tile.deviation[i] = deviation_from_code(static_cast<unsigned>(d));
+            tile.radius[i] = radius_from_code(static_cast<unsigned>(r));
         }
     }
     tile.deviation[0] = tile.radius[0] = 0;
@@ -265,15 +263,12 @@ void read_inner(ByteReader& in, const TileScale& scale, Tile& tile) {
     std::vector<float> start(tile_cells);
     corner_radii(lattice, exists, true, std::vector<std::uint8_t>(tile_cells / 2, 0), start);
     const TileLayout& layout = tile_layout();
-    const Saturation s{layout, tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
-    for (unsigned first = tile_cells / 4; first > 0; first >>= 1) {
-        for (unsigned i = first; i < 2 * first; ++i) {
-            if (layout.split_neighbor[i] == 0) continue;
-            tile.radius[i] = start[i];
-            s.raise(i);
-        }
-        for (unsigned i = first; i < 2 * first; ++i)
-            if (const unsigned beyond = layout.split_neighbor[i]; i < beyond) s.join(i, beyond);
+    static thread_local TileSaturation saturation;
+    saturation.start(tile.depth, lattice.rounded());
+    for (int level = tile_levels - 2; level >= 0; --level) {
+        for (unsigned i = 1u << level; i < 2u << level; ++i)
+            if (layout.split_neighbor[i] != 0) tile.radius[i] = start[i];
+        saturation.level(level, exists, tile.deviation, tile.radius);
     }
 }
 
