@@ -120,6 +120,7 @@ void corner_radii(const TileLattice& lattice, std::span<const std::uint8_t> exis
                   std::span<const std::uint8_t> lacks_below, std::span<float> radius);
 
 /// own_deviation() and corner_radii() of a tile without tiles below it, faster than one after the other.
+/// @param exists, deviation, radius by local index
 void measure_leaf(const TileLattice& lattice, std::span<const std::uint8_t> exists, std::span<float> deviation,
                   std::span<float> radius);
 
