@@ -11,14 +11,14 @@
 
 #include "tests/render/app/earth_views.h"
 #include "tests/render/app/segment_triangles.h"
+#include "tests/render/app/vertex_capture.h"
 
 namespace render {
 namespace {
 
 using namespace testing;
 
-/// What the vertex shader puts out: place from the eye, and gl_Position.
-using DecodedVertex = std::array<std::uint32_t, 7>;
+using DecodedVertex = std::array<std::uint32_t, 7>;  ///< a CapturedVertex as bits
 
 struct BitHash {
     std::size_t operator()(const DecodedVertex& v) const {
@@ -26,30 +26,6 @@ struct BitHash {
         for (const std::uint32_t word : v) h = (h ^ word) * 0x9e3779b97f4a7c15u ^ h >> 29;
         return h;
     }
-};
-
-class VertexCapture {
-  public:
-    /// All vertices, decoded for this camera.
-    std::vector<DecodedVertex> decode(std::span<const planet::SegmentVertex> vertices, const Camera& camera) {
-        const SegmentBuffers buffers(vertices, {});
-        const Buffer output(vertices.size() * sizeof(DecodedVertex), 0);
-        target_.bind();
-        program_.use();
-        set_grid_camera(program_, camera, whole(camera));
-        buffers.bind();
-        output.bind_base(GL_TRANSFORM_FEEDBACK_BUFFER, 0);
-        gl().Enable(GL_RASTERIZER_DISCARD);
-        gl().BeginTransformFeedback(GL_POINTS);
-        gl().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(vertices.size()));
-        gl().EndTransformFeedback();
-        gl().Disable(GL_RASTERIZER_DISCARD);
-        return output.download<DecodedVertex>(vertices.size());
-    }
-
-  private:
-    Program program_ = Program::link({"terrain.vert.glsl"}, {.feedback_varyings = {"view", "gl_Position"}});
-    Framebuffer target_{1, 1};  // without any display there is no other
 };
 
 struct Seams {
@@ -115,7 +91,8 @@ TEST_F(SeamBits, AreTheSameOnBothSides) {
         for (std::size_t i = 0; i < count; ++i) {
             const EarthView view = views.next(earth);
             segments.build(earth.tiles(), whole_planet_view(view.camera, earth.ball(), 4), 2);
-            const Seams seams = seams_of(triangles_of(segments), capture.decode(segments.vertices(), view.camera));
+            const Seams seams =
+                seams_of(triangles_of(segments), capture.decode<DecodedVertex>(segments.vertices(), view.camera));
             EXPECT_EQ(seams.open, 0u) << "view " << i << ", exaggeration " << exaggeration;
             EXPECT_GT(seams.border, 0u) << "view " << i << ", exaggeration " << exaggeration;
             border += seams.border;
@@ -137,7 +114,7 @@ TEST_F(SeamBits, AreSeenToDiffer) {
     std::vector<planet::SegmentVertex> vertices(segments.vertices().begin(), segments.vertices().end());
     VertexCapture capture;
     const auto triangles = triangles_of(segments);
-    ASSERT_EQ(seams_of(triangles, capture.decode(vertices, camera)).open, 0u);
+    ASSERT_EQ(seams_of(triangles, capture.decode<DecodedVertex>(vertices, camera)).open, 0u);
     const auto distance = [&](const planet::SegmentVertex& v) {
         return glm::distance(planet::ecef_from_grid(v.position), camera.eye);
     };
@@ -147,7 +124,8 @@ TEST_F(SeamBits, AreSeenToDiffer) {
     // The least step that the shader's rounding keeps at that distance: 2^-23 of it at most, in steps of 2^-18 m.
     const auto step = static_cast<std::uint32_t>(std::max(1.0f, std::ceil(at * 0x1p-23f * 0x1p18f)));
     nearest->position.low ^= std::bit_ceil(step);
-    EXPECT_GT(seams_of(triangles, capture.decode(vertices, camera)).open, 0u) << at << " m away, " << step << " steps";
+    EXPECT_GT(seams_of(triangles, capture.decode<DecodedVertex>(vertices, camera)).open, 0u)
+        << at << " m away, " << step << " steps";
 }
 
 }  // namespace

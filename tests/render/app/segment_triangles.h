@@ -2,7 +2,7 @@
 // Segments as what they are drawn as: strips on the GPU, or a list of triangles.
 
 #include <array>
-#include <bit>
+#include <span>
 #include <vector>
 
 #include "planet/mesh/segments.h"
@@ -61,15 +61,15 @@ class SegmentBuffers {
     void bind() const { array_.bind(); }
     /// Draws the strips of those that `wanted(segment)`, with the program in use.
     template <class Wanted>
-    void draw_strips(const planet::Segments& segments, Wanted wanted) const {
+    void draw_strips(std::span<const planet::Segment> segments, Wanted wanted) const {
         bind();
-        for (const planet::Segment& s : segments.segments())
+        for (const planet::Segment& s : segments)
             if (wanted(s))
                 gl().DrawElementsBaseVertex(GL_TRIANGLE_STRIP, static_cast<GLsizei>(s.index_count), GL_UNSIGNED_INT,
                                             reinterpret_cast<const void*>(std::size_t{s.first_index} * 4),
                                             static_cast<GLint>(s.first_vertex));
     }
-    void draw_strips(const planet::Segments& segments) const {
+    void draw_strips(std::span<const planet::Segment> segments) const {
         draw_strips(segments, [](const planet::Segment&) { return true; });
     }
     /// Draws the indices as a list of triangles.
