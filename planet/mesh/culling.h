@@ -22,12 +22,13 @@ struct Culling {
 /// Conservative: a sphere it calls hidden is hidden, whatever it holds.
 class CullingTest {
   public:
-    static constexpr unsigned everything = 31;  ///< bits 0..3 the planes, bit 4 the horizon
-
     explicit CullingTest(const Culling& culling) : culling_(culling) {
+        for (unsigned k = 0; k < 4; ++k)
+            if (culling.inward[k] != glm::dvec3(0)) everything_ |= 1u << k;
         const double distance2 = glm::dot(culling.eye, culling.eye),
                      ball2 = culling.occluder_radius * culling.occluder_radius;
         if (distance2 <= ball2) return;
+        everything_ |= horizon;
         const double distance = std::sqrt(distance2), tangent = std::sqrt(distance2 - ball2);
         to_centre_ = -culling.eye / distance;
         tangent_circle_ = tangent * tangent / distance;
@@ -35,9 +36,13 @@ class CullingTest {
         sin_cone_ = culling.occluder_radius / distance;
     }
 
-    /// @param open what a sphere that holds this one has not passed whole, `everything` to begin with; becomes what this
+    /// All there is to ask: a bit for each plane and one for the horizon.
+    unsigned everything() const { return everything_; }
+
+    /// @param open what a sphere that holds this one has not passed whole, everything() to begin with; becomes what this
     /// one has not: it need not be asked of spheres within
     bool hidden(const glm::dvec3& centre, double radius, unsigned& open) const {
+        if (open == 0) return false;
         const glm::dvec3 to = centre - culling_.eye;
         for (unsigned k = 0; k < 4; ++k) {
             if (!(open >> k & 1)) continue;
@@ -45,15 +50,17 @@ class CullingTest {
             if (inside < -radius) return true;
             if (inside > radius) open &= ~(1u << k);
         }
-        return (open & 16) != 0 && behind_horizon(to, radius, open);
+        return (open & horizon) != 0 && behind_horizon(to, radius, open);
     }
 
   private:
+    static constexpr unsigned horizon = 16;
+
     // Hidden lies in the shadow of the ball seen from the eye: inside the tangent cone, and beyond the tangent circle.
     bool behind_horizon(const glm::dvec3& to, double radius, unsigned& open) const {
         const double along = glm::dot(to, to_centre_);
         if (!(along - radius > tangent_circle_)) {
-            if (!(along + radius > tangent_circle_)) open &= ~16u;
+            if (!(along + radius > tangent_circle_)) open &= ~horizon;
             return false;
         }
         // The sphere's far rim from the cone's axis, against the cone: sin(axis angle) + radius / |to| <= sin(cone).
@@ -62,6 +69,7 @@ class CullingTest {
     }
 
     Culling culling_;
+    unsigned everything_ = 0;
     glm::dvec3 to_centre_{0};
     double tangent_circle_ =
         std::numeric_limits<double>::infinity();  ///< from the eye along to_centre_; in the ball: never
@@ -69,8 +77,9 @@ class CullingTest {
 };
 
 inline bool Culling::hidden(const glm::dvec3& centre, double radius) const {
-    unsigned open = CullingTest::everything;
-    return CullingTest(*this).hidden(centre, radius, open);
+    const CullingTest test(*this);
+    unsigned open = test.everything();
+    return test.hidden(centre, radius, open);
 }
 
 }  // namespace planet

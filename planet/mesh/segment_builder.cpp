@@ -109,6 +109,16 @@ void SegmentBuilder::build(const PlacedCell& cell, LocationCode half, std::vecto
     });
 }
 
+// The apex is the vertex that the leaf or its sibling will most likely add.
+inline int SegmentBuilder::push(const PlacedTile& t, unsigned i, int level) {
+    const std::uint16_t apex = layout_.corners[i][2];
+    __builtin_prefetch(&t.position[apex]);
+    __builtin_prefetch(&t.height[apex]);
+    stack_.reserve_more(1);
+    stack_.push({&t, static_cast<std::uint16_t>(i), static_cast<std::uint8_t>(level)});
+    return 1;
+}
+
 // find... return how many leaves a cell has left on the stack, at most segment_leaves, or `several` segments.
 int SegmentBuilder::find(const PlacedTile& t, unsigned i, int level) {
     if (i >> t.depth) return find_below(t, i, level);
@@ -123,7 +133,8 @@ int SegmentBuilder::find_in_children(const PlacedTile& t, unsigned i, int level)
         a = find_below(t, first, level);
         b = find_below(t, second, level);
     } else {
-        const SplitRecord* split = &t.split[first];  // both are tested before either is walked: the tests overlap
+        const SplitRecord* split = &t.split[first];      // both are tested before either is walked: the tests overlap
+        if (!(2 * first >> t.depth)) __builtin_prefetch(&t.split[2 * first]);
         const bool first_split = test_(split[0]), second_split = test_(split[1]);
         a = first_split ? find_in_children(t, first, level) : push(t, first, level);
         b = second_split ? find_in_children(t, second, level) : push(t, second, level);
@@ -141,12 +152,6 @@ int SegmentBuilder::find_below(const PlacedTile& t, unsigned i, int level) {
         if (below && test_(below->split[1])) return find_in_children(*below, 1, level);
     }
     return push(t, i, level);
-}
-
-int SegmentBuilder::push(const PlacedTile& t, unsigned i, int level) {
-    stack_.reserve_more(1);
-    stack_.push({&t, static_cast<std::uint16_t>(i), static_cast<std::uint8_t>(level)});
-    return 1;
 }
 
 /// Makes a segment of the uppermost leaves of the stack.
@@ -173,6 +178,7 @@ void SegmentBuilder::make(BuiltSegment& segment) {
     if (view_->morph) morphs_.reserve_more(segment.leaves + 2);
     first_vertex_ = segment.first_vertex;
     slack_ = Slack(test_.eye);
+    leaf_before_.tile = nullptr;
     damaged_ = false;
     ratio_max_ = deviation_max_ = 0;
     worth_ = std::numeric_limits<double>::infinity();
@@ -231,35 +237,36 @@ std::uint32_t SegmentBuilder::add(const PlacedTile& t, std::uint16_t vertex) {
     return static_cast<std::uint32_t>(vertices_.size() - 1 - first_vertex_);
 }
 
+// An unsplit diamond: its slack, and its deviation over what the test allows at the nearest point below it.
+inline void SegmentBuilder::certify(const SplitRecord& s) {
+    if (!(s.deviation > 0)) return;
+    const double deviation = static_cast<double>(s.deviation), scaled = test_.K * deviation;
+    deviation_max_ = std::max(deviation_max_, deviation);
+    const double d2 = test_.distance2(s), r = static_cast<double>(s.radius);
+    slack_.add(d2, r + scaled);
+    // scaled / (d - r) > ratio_max without a root or a division: most leaves are not the worst.
+    if (const double within = scaled * worth_ + r; d2 < within * within) [[unlikely]] {
+        ratio_max_ = std::max(ratio_max_, scaled / std::max(std::sqrt(d2) - r, 0.0));
+        worth_ = 1 / ratio_max_;
+    }
+}
+
 // The leaf must go on to fail its test, and its parent to pass: then all above it pass, as the test is nested.
 void SegmentBuilder::certify(const Leaf& leaf, bool whole_segment) {
     const PlacedTile& t = *leaf.tile;
     const unsigned i = leaf.local;
     damaged_ = damaged_ || t.damaged;
-    if (!whole_segment) slack_.add(test_, t.split[i >> 1]);
+    const bool sibling_was_leaf = (i & 1) != 0 && leaf_before_.tile == &t && leaf_before_.local == i - 1;
+    leaf_before_ = leaf;
+    if (!whole_segment && !sibling_was_leaf) slack_.add(test_, t.split[i >> 1]);
     if (!(i >> t.depth)) {
-        slack_.add(test_, t.split[i]);
         certify(t.split[i]);
     } else if (t.depth == tile_levels && !t.child_bound.empty()) {
         const SplitRecord& bound = t.child_bound[i - tile_cells];
-        slack_.add(test_, bound);
         const PlacedTile* below = t.child(*tiles_, i - tile_cells, test_);
-        if (below) slack_.add(test_, below->split[1]);
+        if (below) slack_.add(test_, bound);
         certify(below ? below->split[1] : bound);
         damaged_ = damaged_ || (below && below->damaged);
-    }
-}
-
-// An unsplit diamond: its deviation over what the test allows at the nearest point below it.
-void SegmentBuilder::certify(const SplitRecord& s) {
-    if (!(s.deviation > 0)) return;
-    const double deviation = static_cast<double>(s.deviation), scaled = test_.K * deviation;
-    deviation_max_ = std::max(deviation_max_, deviation);
-    const double d2 = test_.distance2(s), r = static_cast<double>(s.radius);
-    // scaled / (d - r) > ratio_max without a root or a division: most leaves are not the worst.
-    if (const double within = scaled * worth_ + r; d2 < within * within) [[unlikely]] {
-        ratio_max_ = std::max(ratio_max_, scaled / std::max(std::sqrt(d2) - r, 0.0));
-        worth_ = 1 / ratio_max_;
     }
 }
 

@@ -110,6 +110,7 @@ class SegmentBuilder {
     Frame frame_;
     std::size_t first_vertex_ = 0;
     Slack slack_{glm::dvec3(0)};
+    Leaf leaf_before_{};
     bool damaged_ = false;
     double ratio_max_ = 0, deviation_max_ = 0, worth_ = 0;  // worth: 1 / ratio_max
 };

@@ -42,7 +42,7 @@ class SegmentTree::Visit {
             Slack slack(view_.test.eye);
             look_at(tree_.nodes_[static_cast<std::size_t>(face)], *tile, 1, slack);
         }
-        visit(static_cast<std::uint32_t>(face), CullingTest::everything);
+        visit(static_cast<std::uint32_t>(face), culling_.everything());
     }
 
   private:

@@ -34,7 +34,7 @@ struct SegmentView {
     /// bounds the number of lattice samples per pixel from below.
     double segment_angle = 0.1;
     /// A segment is the largest cell within a patch of at most so many leaves, at least 1.
-    int segment_leaves = 512;
+    int segment_leaves = 256;
     double radius_m = 6371008.8;  ///< of the planet
     int detail_level = 24;        ///< bisection level, a multiple of 12; see Segment::detailed
     /// No patch is of a finer bisection level: below, the lattice of normals would be finer than the data.

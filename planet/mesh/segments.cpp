@@ -70,6 +70,7 @@ void Segments::update(const TileSource& tiles, const SegmentView& view, int thre
     built_ = 0;
     if (tiles_from_ != &tiles || !view.same_but_for_eye_and_culling(view_)) clear();
     const bool at_rest = listed_ && view.test.eye == view_.test.eye && view.culling == view_.culling;
+    if (view.test.eye != view_.test.eye) ++eye_;
     tiles_from_ = &tiles;
     view_ = view;
     if (at_rest) return;
@@ -97,7 +98,6 @@ void Segments::clear() {
     listed_ = false;
     vertex_places_.clear();
     index_places_.clear();
-    leaf_places_.clear();
     total_leaves_ = 0;
 }
 
@@ -164,7 +164,7 @@ void Segments::build(const TileSource& tiles, Job& job, SegmentBuilder& builder)
         if (tree_.odometer() < piece.expires) {
             add({.cell = piece.segment.root, .leaves = piece.segment.leaves, .piece = k});
         } else {
-            builder.build(piece.built.root, half, built);
+            builder.build(piece.root, half, built);
             add_built();
         }
     }
@@ -184,7 +184,7 @@ void Segments::place(std::span<Job> jobs, std::size_t threads) {
     vertices_.resize(vertex_places_.size());
     if (view_.morph) morphs_.resize(vertex_places_.size());
     indices_.resize(index_places_.size());
-    leaf_levels_.resize(leaf_places_.size());
+    leaf_levels_.resize(index_places_.size());
     constexpr std::size_t run = 16;
     parallel_for((jobs.size() + run - 1) / run, static_cast<unsigned>(threads), [&](std::size_t r) {
         for (const Job& job : jobs.subspan(r * run, std::min(run, jobs.size() - r * run)))
@@ -237,11 +237,15 @@ Segments::Piece Segments::new_piece(const BuiltSegment& b) {
                         .first_index = indices.first,
                         .index_count = indices.count,
                         .leaves = b.leaves,
-                        .first_leaf = leaf_places_.allocate(b.leaves).first,
+                        .first_leaf = indices.first,
                         .detailed = b.detailed},
-            .built = b,
+            .sphere = b.sphere,
             .expires = tree_.expiry(b.slack),
-            .eye = view_.test.eye};
+            .ratio_max = b.ratio_max,
+            .deviation_max = b.deviation_max,
+            .root = b.root,
+            .eye = eye_,
+            .damaged = b.damaged};
 }
 
 void Segments::list() {
@@ -252,16 +256,16 @@ void Segments::list() {
         for (const Piece& p : blocks_[tree_.node(i).content].pieces) {
             sums_.block_leaves += p.segment.leaves;
             unsigned still_open = open;
-            if (culling.hidden(p.built.sphere.centre, p.built.sphere.radius, still_open)) continue;
+            if (culling.hidden(p.sphere.centre, p.sphere.radius, still_open)) continue;
             segments_.push_back(p.segment);
             sums_.leaves += p.segment.leaves;
             sums_.vertices += p.segment.vertex_count;
             sums_.indices += p.segment.index_count;
-            sums_.damaged = sums_.damaged || p.built.damaged;
-            const double ratio = p.built.ratio_max;
-            const bool exact = ratio == 0 || p.eye == view_.test.eye;
+            sums_.damaged = sums_.damaged || p.damaged;
+            const double ratio = p.ratio_max;
+            const bool exact = ratio == 0 || p.eye == eye_;
             sums_.ratio_max = std::max(sums_.ratio_max, exact ? ratio : ratio <= 1 ? 1 : infinity);
-            sums_.deviation_max = std::max(sums_.deviation_max, p.built.deviation_max);
+            sums_.deviation_max = std::max(sums_.deviation_max, p.deviation_max);
         }
     kept_ = total_leaves_ - sums_.block_leaves;
 }
@@ -278,7 +282,6 @@ void Segments::release_dropped() {
 void Segments::release(const Segment& s) {
     vertex_places_.free({s.first_vertex, s.vertex_count});
     index_places_.free({s.first_index, s.index_count});
-    leaf_places_.free({s.first_leaf, s.leaves});
     total_leaves_ -= s.leaves;
 }
 

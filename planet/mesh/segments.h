@@ -23,7 +23,7 @@ struct Segment {
     LocationCode patch;
     std::uint32_t first_vertex, vertex_count, first_index, index_count;
     std::uint32_t leaves;
-    std::uint32_t first_leaf;  ///< into leaf_levels()
+    std::uint32_t first_leaf;  ///< into leaf_levels(); has room for as many as there are indices
     bool detailed;             ///< holds tiles rooted at SegmentView::detail_level or deeper
 };
 
@@ -82,9 +82,12 @@ class Segments {
     /// A segment with a place.
     struct Piece {
         Segment segment;
-        BuiltSegment built;
+        Sphere sphere;
         double expires;  ///< see SegmentTree
-        glm::dvec3 eye;  ///< for which it was built
+        double ratio_max, deviation_max;
+        PlacedCell root;
+        std::uint32_t eye;  ///< number of the eye for which it was built
+        bool damaged;
     };
     /// The segments of a patch's half, in Sierpinski order.
     struct Block {
@@ -119,7 +122,7 @@ class Segments {
     std::vector<std::uint32_t> free_blocks_;
     std::vector<std::unique_ptr<SegmentBuilder>> builders_;
 
-    RangeAllocator vertex_places_, index_places_, leaf_places_;
+    RangeAllocator vertex_places_, index_places_;  // levels have the place of indices
     GrowingArray<SegmentVertex> vertices_;
     GrowingArray<MorphVertex> morphs_;
     GrowingArray<std::uint32_t> indices_;
@@ -127,6 +130,7 @@ class Segments {
 
     std::vector<Segment> segments_;
     std::vector<Range> changed_vertices_, changed_indices_;
+    std::uint32_t eye_ = 0;  // counts its places
     std::size_t built_ = 0, total_leaves_ = 0, kept_ = 0;
     Sums sums_;
 };

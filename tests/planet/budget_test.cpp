@@ -55,7 +55,7 @@ TEST(Budget, IsKeptAndAlmostUsedUp) {
         const SegmentView view = view_ahead(height);
         triangles_at(tiles, view, 100);  // loads tiles
         double last = 0;
-        for (const std::size_t limit : {5000u, 5003u, 8000u, 20000u, 60000u}) {
+        for (const std::size_t limit : {8000u, 8003u, 12000u, 20000u, 60000u}) {
             const TriangleBudget b = fit_triangles(tiles, view, limit);
             EXPECT_LE(b.triangles, limit);
             EXPECT_EQ(b.triangles, triangles_at(tiles, view, b.K));

@@ -55,8 +55,7 @@ TEST(SegmentBuilder, SlackIsHowFarTheEyeMayMove) {
         const auto direction = [&] {
             return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
         };
-        int changed = 0, tested = 0, leaves_only = 0;
-        for (int round = 0; round < 40; ++round) {
+        for (int round = 0; round < 16; ++round) {
             SegmentView view;
             view.segment_leaves = 200;
             view.test.K = 100;
@@ -72,7 +71,6 @@ TEST(SegmentBuilder, SlackIsHowFarTheEyeMayMove) {
                                                       });
             ASSERT_LT(s.slack, 1e6);
             ++tested;
-            leaves_only += s.leaves == 1;
             bool changes = false;
             for (int k = 0; k < 24; ++k) {
                 // Towards and away from what is near is where most tests change.
@@ -94,8 +92,8 @@ TEST(SegmentBuilder, SlackIsHowFarTheEyeMayMove) {
             }
             changed += changes;
         }
-        EXPECT_EQ(tested, 40);
-        EXPECT_GT(changed, 20);
+        EXPECT_EQ(tested, 16);
+        EXPECT_GT(changed, 8);
     }
 }
 
