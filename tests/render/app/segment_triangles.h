@@ -79,7 +79,7 @@ class SegmentBuffers {
     }
 
   private:
-    Buffer vertices_, indices_;
+    Buffer vertices_, indices_, morphs_;
     VertexArray array_;
 };
 

@@ -17,11 +17,22 @@ static_assert(sizeof(CapturedVertex) == 28);
 
 class VertexCapture {
   public:
+    /// @param defines of the vertex shader
+    explicit VertexCapture(std::vector<std::string> defines = {})
+        : program_(Program::link({"terrain.vert.glsl"},
+                                 {.defines = std::move(defines), .feedback_varyings = {"view", "gl_Position"}})) {}
+
+    /// With MORPH: K of the split test.
+    void set_morph_reach(double reach) { program_.set("morph_reach", static_cast<float>(reach)); }
+
     /// All vertices, as CapturedVertex or its bits.
     template <class Vertex = CapturedVertex>
     std::vector<Vertex> decode(std::span<const planet::SegmentVertex> vertices, const Camera& camera) {
-        const SegmentBuffers buffers(vertices, {});
-        const Buffer output(vertices.size() * sizeof(Vertex), 0);
+        return decode<Vertex>(SegmentBuffers(vertices, {}), vertices.size(), camera);
+    }
+    template <class Vertex = CapturedVertex>
+    std::vector<Vertex> decode(const SegmentBuffers& buffers, std::size_t count, const Camera& camera) {
+        const Buffer output(count * sizeof(Vertex), 0);
         target_.bind();
         program_.use();
         set_grid_camera(program_, camera, {0, 0, camera.width, camera.height});
@@ -29,14 +40,14 @@ class VertexCapture {
         output.bind_base(GL_TRANSFORM_FEEDBACK_BUFFER, 0);
         gl().Enable(GL_RASTERIZER_DISCARD);
         gl().BeginTransformFeedback(GL_POINTS);
-        gl().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(vertices.size()));
+        gl().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count));
         gl().EndTransformFeedback();
         gl().Disable(GL_RASTERIZER_DISCARD);
-        return output.download<Vertex>(vertices.size());
+        return output.download<Vertex>(count);
     }
 
   private:
-    Program program_ = Program::link({"terrain.vert.glsl"}, {.feedback_varyings = {"view", "gl_Position"}});
+    Program program_;
     Framebuffer target_{1, 1};  // without any display there is no other
 };
 
