@@ -55,8 +55,13 @@ class SegmentBuffers {
         array_.set_vertices(0, vertices_, sizeof(planet::SegmentVertex), grid_attributes());
         array_.set_indices(indices_);
     }
+    /// Morphs too, if there are any.
     explicit SegmentBuffers(const planet::Segments& segments)
-        : SegmentBuffers(segments.vertices(), segments.indices()) {}
+        : SegmentBuffers(segments.vertices(), segments.indices()) {
+        if (segments.morphs().empty()) return;
+        morphs_ = Buffer(bytes_of(segments.morphs()));
+        array_.set_vertices(2, morphs_, sizeof(planet::MorphVertex), morph_attributes());
+    }
 
     void bind() const { array_.bind(); }
     /// Draws the strips of those that `wanted(segment)`, with the program in use.
