@@ -47,7 +47,7 @@ class WhitePass {
     }
     std::vector<bool> magenta(const planet::Segments& segments, const Camera& camera, bool cull_faces) {
         begin(camera, cull_faces);
-        SegmentBuffers(segments).draw_strips(segments);
+        SegmentBuffers(segments).draw_strips(segments.segments());
         return magenta();
     }
 
@@ -144,8 +144,8 @@ TEST_F(Cracks, AreSeenWhereThereAreSome) {
     // Every other segment that both have is drawn coarse.
     const auto swapped = [&](const planet::Segment& s) { return s.root.bits() % 2 == 0 && in_coarse(s); };
     pass.begin(camera, true);
-    SegmentBuffers(fine).draw_strips(fine, [&](const planet::Segment& s) { return !swapped(s); });
-    SegmentBuffers(coarse).draw_strips(coarse, [&](const planet::Segment& s) {
+    SegmentBuffers(fine).draw_strips(fine.segments(), [&](const planet::Segment& s) { return !swapped(s); });
+    SegmentBuffers(coarse).draw_strips(coarse.segments(), [&](const planet::Segment& s) {
         return swapped(s) && std::any_of(fine.segments().begin(), fine.segments().end(),
                                          [&](const planet::Segment& f) { return f.root == s.root; });
     });
@@ -154,7 +154,7 @@ TEST_F(Cracks, AreSeenWhereThereAreSome) {
     // Every tenth segment is left out.
     std::size_t count = 0;
     pass.begin(camera, true);
-    SegmentBuffers(fine).draw_strips(fine, [&](const planet::Segment&) { return ++count % 10 != 0; });
+    SegmentBuffers(fine).draw_strips(fine.segments(), [&](const planet::Segment&) { return ++count % 10 != 0; });
     EXPECT_GT(holes_in_ball(pass.magenta(), camera, terrain.ball()), 0u);
 }
 

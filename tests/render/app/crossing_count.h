@@ -20,7 +20,14 @@ namespace render::testing {
 
 class CrossingCount {
   public:
-    CrossingCount(int width, int height) : target_(width, height, {.color_format = GL_R32F, .depth = false}) {}
+    /// @param defines of the vertex shader
+    CrossingCount(int width, int height, std::vector<std::string> defines = {})
+        : program_(Program::link({"terrain.vert.glsl", "crossing.frag.glsl"},
+                                 {.defines = std::move(defines), .find = source})),
+          target_(width, height, {.color_format = GL_R32F, .depth = false}) {}
+
+    /// With MORPH: K of the split test.
+    void set_morph_reach(double reach) { program_.set("morph_reach", static_cast<float>(reach)); }
 
     /// @param draw draws the whole planet with the program in use @return by pixel, the top row first
     template <class Draw>
@@ -49,7 +56,7 @@ class CrossingCount {
                    "void main() { crossing = gl_FrontFacing ? 1.0 : -1.0; }\n";
         return find_shader_source(name);
     }
-    Program program_ = Program::link({"terrain.vert.glsl", "crossing.frag.glsl"}, {.find = source});
+    Program program_;
     Framebuffer target_;
 };
 

@@ -117,7 +117,7 @@ TEST_F(Crossings, CancelInEveryView) {
             const EarthView view = views.next(earth);
             segments.build(earth.tiles(), whole_planet_view(view.camera, earth.ball()), 2);
             const SegmentBuffers buffers(segments);
-            const auto sums = crossings.count(view.camera, [&] { buffers.draw_strips(segments); });
+            const auto sums = crossings.count(view.camera, [&] { buffers.draw_strips(segments.segments()); });
             EXPECT_EQ(wrong(sums, view.inside ? -1 : 0), 0u) << "view " << i << ", exaggeration " << exaggeration;
         }
     }
@@ -137,7 +137,7 @@ TEST_F(Crossings, CancelLowOverHills) {
                                               focal_length_px(40 * degrees, width, height), width, height);
             segments.build(earth.tiles(), whole_planet_view(camera, earth.ball(), 0.5), 2);
             const SegmentBuffers buffers(segments);
-            const auto sums = crossings.count(camera, [&] { buffers.draw_strips(segments); });
+            const auto sums = crossings.count(camera, [&] { buffers.draw_strips(segments.segments()); });
             EXPECT_EQ(wrong(sums, 0), 0u) << "hill at " << latitude << "," << longitude << ", heading " << heading;
         }
     }
@@ -237,7 +237,7 @@ TEST_F(Crossings, ShowAVertexOffByOneStepOfTheGrid) {
         std::vector<planet::SegmentVertex> vertices(segments.vertices().begin(), segments.vertices().end());
         const auto count = [&] {
             const SegmentBuffers buffers(vertices, segments.indices());
-            return wrong(crossings.count(camera, [&] { buffers.draw_strips(segments); }), 0);
+            return wrong(crossings.count(camera, [&] { buffers.draw_strips(segments.segments()); }), 0);
         };
         EXPECT_EQ(count(), 0u);
         const planet::GridPosition position = planet::grid_from_ecef(point);

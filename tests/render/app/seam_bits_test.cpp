@@ -10,97 +10,13 @@
 #include <unordered_map>
 
 #include "tests/render/app/earth_views.h"
-#include "tests/render/app/segment_triangles.h"
+#include "tests/render/app/seams.h"
+#include "tests/render/app/vertex_capture.h"
 
 namespace render {
 namespace {
 
 using namespace testing;
-
-/// What the vertex shader puts out: place from the eye, and gl_Position.
-using DecodedVertex = std::array<std::uint32_t, 7>;
-
-struct BitHash {
-    std::size_t operator()(const DecodedVertex& v) const {
-        std::uint64_t h = 0;
-        for (const std::uint32_t word : v) h = (h ^ word) * 0x9e3779b97f4a7c15u ^ h >> 29;
-        return h;
-    }
-};
-
-class VertexCapture {
-  public:
-    /// All vertices, decoded for this camera.
-    std::vector<DecodedVertex> decode(std::span<const planet::SegmentVertex> vertices, const Camera& camera) {
-        const SegmentBuffers buffers(vertices, {});
-        const Buffer output(vertices.size() * sizeof(DecodedVertex), 0);
-        target_.bind();
-        program_.use();
-        set_grid_camera(program_, camera, whole(camera));
-        buffers.bind();
-        output.bind_base(GL_TRANSFORM_FEEDBACK_BUFFER, 0);
-        gl().Enable(GL_RASTERIZER_DISCARD);
-        gl().BeginTransformFeedback(GL_POINTS);
-        gl().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(vertices.size()));
-        gl().EndTransformFeedback();
-        gl().Disable(GL_RASTERIZER_DISCARD);
-        return output.download<DecodedVertex>(vertices.size());
-    }
-
-  private:
-    Program program_ = Program::link({"terrain.vert.glsl"}, {.feedback_varyings = {"view", "gl_Position"}});
-    Framebuffer target_{1, 1};  // without any display there is no other
-};
-
-struct Seams {
-    std::size_t open = 0;      ///< directed sides without their reverse
-    std::size_t border = 0;    ///< sides between two segments, closed
-    std::size_t vertices = 0;  ///< different ones on those
-};
-
-Seams seams_of(const std::vector<SegmentTriangle>& triangles, const std::vector<DecodedVertex>& decoded) {
-    struct Side {
-        std::uint64_t ends;  // numbers of the bits, from and to
-        std::uint32_t segment;
-    };
-    std::unordered_map<DecodedVertex, std::uint32_t, BitHash> numbers;
-    std::vector<Side> sides, reversed;
-    for (const SegmentTriangle& t : triangles) {
-        std::uint64_t n[3];
-        for (std::size_t k = 0; k < 3; ++k)
-            n[k] = numbers.try_emplace(decoded[t.vertex[k]], static_cast<std::uint32_t>(numbers.size())).first->second;
-        // Far away vertices can fall together; a triangle of two such vertices has no area, and its sides cancel.
-        for (std::size_t k = 0; k < 3; ++k) {
-            sides.push_back({n[k] << 32 | n[(k + 1) % 3], t.segment});
-            reversed.push_back({n[(k + 1) % 3] << 32 | n[k], t.segment});
-        }
-    }
-    const auto less = [](const Side& a, const Side& b) {
-        return std::pair(a.ends, a.segment) < std::pair(b.ends, b.segment);
-    };
-    std::sort(sides.begin(), sides.end(), less);
-    std::sort(reversed.begin(), reversed.end(), less);
-    Seams seams;
-    std::vector<std::uint64_t> at_border;
-    auto other = reversed.begin();
-    for (const Side& side : sides) {
-        while (other != reversed.end() && other->ends < side.ends) ++other, ++seams.open;
-        if (other == reversed.end() || other->ends != side.ends) {
-            ++seams.open;
-            continue;
-        }
-        if (other->segment != side.segment) {
-            ++seams.border;
-            at_border.push_back(side.ends >> 32);
-        }
-        ++other;
-    }
-    seams.open += static_cast<std::size_t>(reversed.end() - other);
-    seams.border /= 2;
-    std::sort(at_border.begin(), at_border.end());
-    seams.vertices = static_cast<std::size_t>(std::unique(at_border.begin(), at_border.end()) - at_border.begin());
-    return seams;
-}
 
 using SeamBits = DrawnEarth;
 
@@ -115,7 +31,8 @@ TEST_F(SeamBits, AreTheSameOnBothSides) {
         for (std::size_t i = 0; i < count; ++i) {
             const EarthView view = views.next(earth);
             segments.build(earth.tiles(), whole_planet_view(view.camera, earth.ball(), 4), 2);
-            const Seams seams = seams_of(triangles_of(segments), capture.decode(segments.vertices(), view.camera));
+            const Seams seams =
+                seams_of(triangles_of(segments), capture.decode<DecodedVertex>(segments.vertices(), view.camera));
             EXPECT_EQ(seams.open, 0u) << "view " << i << ", exaggeration " << exaggeration;
             EXPECT_GT(seams.border, 0u) << "view " << i << ", exaggeration " << exaggeration;
             border += seams.border;
@@ -137,7 +54,7 @@ TEST_F(SeamBits, AreSeenToDiffer) {
     std::vector<planet::SegmentVertex> vertices(segments.vertices().begin(), segments.vertices().end());
     VertexCapture capture;
     const auto triangles = triangles_of(segments);
-    ASSERT_EQ(seams_of(triangles, capture.decode(vertices, camera)).open, 0u);
+    ASSERT_EQ(seams_of(triangles, capture.decode<DecodedVertex>(vertices, camera)).open, 0u);
     const auto distance = [&](const planet::SegmentVertex& v) {
         return glm::distance(planet::ecef_from_grid(v.position), camera.eye);
     };
@@ -147,7 +64,8 @@ TEST_F(SeamBits, AreSeenToDiffer) {
     // The least step that the shader's rounding keeps at that distance: 2^-23 of it at most, in steps of 2^-18 m.
     const auto step = static_cast<std::uint32_t>(std::max(1.0f, std::ceil(at * 0x1p-23f * 0x1p18f)));
     nearest->position.low ^= std::bit_ceil(step);
-    EXPECT_GT(seams_of(triangles, capture.decode(vertices, camera)).open, 0u) << at << " m away, " << step << " steps";
+    EXPECT_GT(seams_of(triangles, capture.decode<DecodedVertex>(vertices, camera)).open, 0u)
+        << at << " m away, " << step << " steps";
 }
 
 }  // namespace

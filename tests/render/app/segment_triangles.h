@@ -2,7 +2,7 @@
 // Segments as what they are drawn as: strips on the GPU, or a list of triangles.
 
 #include <array>
-#include <bit>
+#include <span>
 #include <vector>
 
 #include "planet/mesh/segments.h"
@@ -55,21 +55,26 @@ class SegmentBuffers {
         array_.set_vertices(0, vertices_, sizeof(planet::SegmentVertex), grid_attributes());
         array_.set_indices(indices_);
     }
+    /// Morphs too, if there are any.
     explicit SegmentBuffers(const planet::Segments& segments)
-        : SegmentBuffers(segments.vertices(), segments.indices()) {}
+        : SegmentBuffers(segments.vertices(), segments.indices()) {
+        if (segments.morphs().empty()) return;
+        morphs_ = Buffer(bytes_of(segments.morphs()));
+        array_.set_vertices(2, morphs_, sizeof(planet::MorphVertex), morph_attributes());
+    }
 
     void bind() const { array_.bind(); }
     /// Draws the strips of those that `wanted(segment)`, with the program in use.
     template <class Wanted>
-    void draw_strips(const planet::Segments& segments, Wanted wanted) const {
+    void draw_strips(std::span<const planet::Segment> segments, Wanted wanted) const {
         bind();
-        for (const planet::Segment& s : segments.segments())
+        for (const planet::Segment& s : segments)
             if (wanted(s))
                 gl().DrawElementsBaseVertex(GL_TRIANGLE_STRIP, static_cast<GLsizei>(s.index_count), GL_UNSIGNED_INT,
                                             reinterpret_cast<const void*>(std::size_t{s.first_index} * 4),
                                             static_cast<GLint>(s.first_vertex));
     }
-    void draw_strips(const planet::Segments& segments) const {
+    void draw_strips(std::span<const planet::Segment> segments) const {
         draw_strips(segments, [](const planet::Segment&) { return true; });
     }
     /// Draws the indices as a list of triangles.
@@ -79,7 +84,7 @@ class SegmentBuffers {
     }
 
   private:
-    Buffer vertices_, indices_;
+    Buffer vertices_, indices_, morphs_;
     VertexArray array_;
 };
 
