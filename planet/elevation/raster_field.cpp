@@ -40,10 +40,12 @@ void keep_every(std::size_t every, std::size_t& sides, std::vector<glm::dvec2>& 
 
 }  // namespace
 
-RasterField::RasterField(std::shared_ptr<const RasterSamples> samples, RasterSurvey survey, VerticalDatum datum)
+RasterField::RasterField(std::shared_ptr<const RasterSamples> samples, RasterSurvey survey, VerticalDatum datum,
+                         bool datum_assumed)
     : samples_(std::move(samples)),
       survey_(std::move(survey)),
       datum_(datum),
+      datum_assumed_(datum_assumed),
       map_(samples_->header()),
       surface_(samples_->header(), survey_) {
     std::vector<RasterBlocks::Block> blocks(survey_.fill.size());
@@ -149,7 +151,7 @@ void RasterField::samples(const Cap& cap, std::vector<glm::dvec3>& normals, std:
 std::vector<SourceInfo> RasterField::sources() const {
     const RasterHeader& r = raster();
     const glm::dvec2 middle = 0.5 * glm::dvec2(r.width - 1, r.height - 1);
-    return {{r.name, r.checksum, r.crs, datum_, spacing_at(middle)}};
+    return {{r.name, r.checksum, r.crs, datum_, spacing_at(middle), datum_assumed_}};
 }
 
 bool RasterField::may_have_border(int column, int row) const {

@@ -20,7 +20,8 @@ class RasterField : public ElevationField {
     /// @param datum what the raster's heights are measured from
     RasterField(std::shared_ptr<const Raster> raster, VerticalDatum datum);
     /// Of any samples and what a survey of them found. No view of the samples may be used after the field is gone.
-    RasterField(std::shared_ptr<const RasterSamples> samples, RasterSurvey survey, VerticalDatum datum);
+    RasterField(std::shared_ptr<const RasterSamples> samples, RasterSurvey survey, VerticalDatum datum,
+                bool datum_assumed = false);
 
     const RasterHeader& raster() const { return samples_->header(); }
 
@@ -45,6 +46,7 @@ class RasterField : public ElevationField {
     std::shared_ptr<const RasterSamples> samples_;
     RasterSurvey survey_;
     VerticalDatum datum_;
+    bool datum_assumed_;
     SampleMap map_;
     RasterSurface surface_;
     RasterBlocks blocks_;

@@ -13,21 +13,6 @@ namespace {
 
 constexpr const char* elevation_file = "an elevation file, e.g. a GeoTIFF";
 
-// Of the bytes of the files; of the samples where there are no files (e.g. inside an archive).
-std::string checksum_of(const Raster& raster, const std::vector<std::string>& files) {
-    std::string of_files = checksum_of_files(files);
-    if (!of_files.empty() && raster.reduction == 1) return of_files;
-    Sha256 sum;
-    if (of_files.empty()) {
-        std::visit([&](const auto& s) { sum.add(s.data(), s.size() * sizeof s[0]); }, raster.samples);
-        add_to_checksum(raster, sum);
-        return sum.hex();
-    }
-    sum.add(of_files.data(), of_files.size());
-    sum.add(&raster.reduction, sizeof raster.reduction);
-    return sum.hex();
-}
-
 // In pieces of about a million samples. False if one does not fit.
 template <class Sample>
 bool read_all(RasterReader& reader, Raster& raster) {
@@ -47,13 +32,6 @@ bool read_all(RasterReader& reader, Raster& raster) {
     return true;
 }
 
-bool holds_a_height(const Raster& raster) {
-    if (const auto* shorts = std::get_if<std::vector<std::int16_t>>(&raster.samples))
-        return std::any_of(shorts->begin(), shorts->end(), [](std::int16_t s) { return s != void_sample; });
-    const auto& floats = std::get<std::vector<float>>(raster.samples);
-    return std::any_of(floats.begin(), floats.end(), [](float f) { return !std::isnan(f); });
-}
-
 }  // namespace
 
 const RasterDriver& raster_driver() {
@@ -67,6 +45,7 @@ std::string checksum_of_files(std::vector<std::string> files) {
     std::error_code failed;
     std::erase_if(files, [&](const std::string& f) { return !std::filesystem::is_regular_file(f, failed); });
     std::sort(files.begin(), files.end());
+    files.erase(std::unique(files.begin(), files.end()), files.end());
     if (files.empty()) return {};
     if (files.size() == 1) return sha256_of_file(files.front());
     Sha256 sum;
@@ -83,6 +62,27 @@ void add_to_checksum(const RasterHeader& raster, Sha256& sum) {
     sum.add(&raster.grid, sizeof raster.grid);
     sum.add(raster.crs.data(), raster.crs.size());
     sum.add(&raster.reduction, sizeof raster.reduction);
+}
+
+std::string checksum_of(const Raster& raster, std::vector<std::string> files) {
+    std::string of_files = checksum_of_files(std::move(files));
+    if (!of_files.empty() && raster.reduction == 1) return of_files;
+    Sha256 sum;
+    if (of_files.empty()) {
+        std::visit([&](const auto& s) { sum.add(s.data(), s.size() * sizeof s[0]); }, raster.samples);
+        add_to_checksum(raster, sum);
+        return sum.hex();
+    }
+    sum.add(of_files.data(), of_files.size());
+    sum.add(&raster.reduction, sizeof raster.reduction);
+    return sum.hex();
+}
+
+bool holds_a_height(const Raster& raster) {
+    if (const auto* shorts = std::get_if<std::vector<std::int16_t>>(&raster.samples))
+        return std::any_of(shorts->begin(), shorts->end(), [](std::int16_t s) { return s != void_sample; });
+    const auto& floats = std::get<std::vector<float>>(raster.samples);
+    return std::any_of(floats.begin(), floats.end(), [](float f) { return !std::isnan(f); });
 }
 
 std::unique_ptr<RasterReader> open_raster(const std::string& path, const RasterOptions& options) {

@@ -87,6 +87,13 @@ std::unique_ptr<RasterReader> open_raster(const std::string& path, const RasterO
 /// left out; empty if nothing is left.
 std::string checksum_of_files(std::vector<std::string> files);
 
+/// Of the bytes of the files that a raster was read from; of its samples and place where there are no such files (e.g.
+/// inside an archive). 64 hex digits.
+std::string checksum_of(const Raster& raster, std::vector<std::string> files);
+
+/// False if every sample is void.
+bool holds_a_height(const Raster& raster);
+
 /// What the checksum of a raster that is made of no files takes in after its samples.
 void add_to_checksum(const RasterHeader& raster, Sha256& sum);
 

@@ -241,4 +241,24 @@ void RasterMosaic::check_unchanged(const MosaicPart& part) const {
     }
 }
 
+Raster read_mosaic(const RasterMosaic& mosaic) {
+    Raster raster;
+    static_cast<RasterHeader&>(raster) = mosaic.header();
+    const SampleWindow all{0, 0, raster.width, raster.height};
+    std::vector<std::string> files;
+    for (const MosaicPart& part : mosaic.parts()) files.insert(files.end(), part.files.begin(), part.files.end());
+    std::vector<std::int16_t> shorts(mosaic.may_be_shorts() ? raster.count() : 0);
+    if (mosaic.may_be_shorts() && mosaic.read(all, shorts)) {
+        raster.samples = std::move(shorts);
+    } else {
+        std::vector<float> floats(raster.count());
+        mosaic.read(all, floats);
+        raster.samples = std::move(floats);
+    }
+    if (!holds_a_height(raster))
+        throw Error(Fault::bad_data, raster.name, "holds no heights: every sample is nodata", "heights");
+    raster.checksum = checksum_of(raster, std::move(files));
+    return raster;
+}
+
 }  // namespace planet

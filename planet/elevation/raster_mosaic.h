@@ -83,4 +83,7 @@ class RasterMosaic {
     mutable Readers idle_;  // most recently used last
 };
 
+/// All of a mosaic in memory, with its checksum. Throws Error if nothing but voids is in it.
+Raster read_mosaic(const RasterMosaic& mosaic);
+
 }  // namespace planet

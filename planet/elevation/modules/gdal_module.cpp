@@ -200,7 +200,8 @@ class GdalReader : public RasterReader {
         const auto [width, height] = std::pair(natural_columns(), natural_rows());
         const auto bytes = static_cast<std::size_t>(GDALGetDataTypeSizeBytes(band_.GetRasterDataType()));
         const std::string driver = dataset_->GetDriverName();
-        if (driver == "VRT") return std::size_t{16} << 20;  // its sources' blocks are unknown
+        if (driver == "VRT")
+            if (const auto source = first_source()) return source->decoded_bytes(columns);
         const bool strips = width == band_.GetXSize();
         if (driver == "GTiff" && strips && !dataset_->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE")) return 0;
         const int rows = (columns + 2 * height - 2) / height * height;
@@ -225,6 +226,18 @@ class GdalReader : public RasterReader {
     }
 
   private:
+    // Of a virtual raster: one of the files that it is made of, null if there is none that can be opened.
+    std::unique_ptr<GdalReader> first_source() const {
+        const GdalMessages messages;
+        for (const std::string& file : files())
+            if (file != path_) try {
+                    return std::make_unique<GdalReader>(file, options_, messages);
+                } catch (const Error&) {
+                    return nullptr;
+                }
+        return nullptr;
+    }
+
     glm::ivec2 natural_size() const {
         glm::ivec2 size(0);
         band_.GetBlockSize(&size.x, &size.y);
