@@ -163,11 +163,8 @@ void set_levels(BakeCommand& command) {
     command.bake.least_level = least;
 }
 
-/// What the program and GDAL take up themselves; the rest is shared.
-void set_memory(BakeCommand& command) {
-    constexpr std::size_t program = std::size_t{56} << 20;
-    command.bake.memory_bytes = (command.memory_bytes - program) / 2;
-}
+/// What the program and GDAL take up themselves; the bake and the sources share the rest.
+constexpr std::size_t program_memory = std::size_t{56} << 20;
 
 void tell_finished(const BakeCommand& command, Report& report) {
     std::cout << command.output.native() << " is finished\n";
@@ -179,7 +176,9 @@ void tell_finished(const BakeCommand& command, Report& report) {
 void run(BakeCommand& command) {
     Report report("bake", command.json);
     set_levels(command);
-    set_memory(command);
+    const std::size_t shared = command.memory_bytes - program_memory;
+    command.bake.memory_bytes = shared / 2;
+    check_bake_sources(command);
     const BakeTarget target = check_bake_target(command.output, command.bake.resume, command.bake.replace);
     if (command.sources.empty() && !command.over_earth && target != BakeTarget::finished)
         throw Error(Fault::bad_usage, "bake", "no sources", "files, patterns or --base earth");
@@ -192,8 +191,8 @@ void run(BakeCommand& command) {
     const auto geoid = std::make_shared<const planet::Geoid>(data_file("egm96-15.pgm"));
     const auto field = [&] {
         const auto step = report.step("sources");
-        progress.update("sources", std::nan(""));
-        return open_bake_sources(command, geoid);
+        return open_bake_sources(command, geoid, shared / 2,
+                                 [&](double fraction) { progress.update("sources", fraction); });
     }();
     set_geoid(command.bake, geoid);
     command.bake.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };

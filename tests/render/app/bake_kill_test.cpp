@@ -1,7 +1,9 @@
 // A bake that is killed at any moment leaves a store that opens, verifies and goes on to the same content.
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/inotify.h>
+#include <sys/syscall.h>
 #include <sys/time.h>
 
 #include <array>
@@ -74,14 +76,64 @@ TEST_F(KilledBake, AtAnyMomentOfItsWork) {
     EXPECT_GE(killed, kills * 2 / 3);
 }
 
+/// What happens in a folder.
+class FolderWatch {
+  public:
+    explicit FolderWatch(const fs::path& folder) : watch_(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {
+        ::inotify_add_watch(watch_, folder.c_str(),
+                            IN_CREATE | IN_MODIFY | IN_DELETE | IN_MOVED_TO | IN_CLOSE_WRITE | IN_CLOSE_NOWRITE);
+    }
+    ~FolderWatch() { ::close(watch_); }
+    FolderWatch(const FolderWatch&) = delete;
+    FolderWatch& operator=(const FolderWatch&) = delete;
+
+    /// Waits for the n-th event of a process, or its end. @return how many there were
+    int wait_for(int n, const Process& process) {
+        const int ended = static_cast<int>(::syscall(SYS_pidfd_open, process.id(), 0));
+        int events = 0;
+        for (bool running = true; running && events < n;) {
+            std::array<pollfd, 2> ready{{{watch_, POLLIN, 0}, {ended, POLLIN, 0}}};
+            ::poll(ready.data(), ready.size(), -1);
+            running = ready[1].revents == 0;
+            alignas(inotify_event) std::array<char, 4096> bytes{};
+            for (ssize_t length; events < n && (length = ::read(watch_, bytes.data(), bytes.size())) > 0;)
+                for (ssize_t at = 0; at < length; ++events)
+                    at += static_cast<ssize_t>(sizeof(inotify_event) +
+                                               reinterpret_cast<const inotify_event*>(bytes.data() + at)->len);
+        }
+        ::close(ended);
+        return events;
+    }
+
+  private:
+    int watch_;
+};
+
 // Moments are evenly spread over what happens in the folder: files made, written, renamed, removed.
 TEST_F(KilledBake, AtAnyMomentOfItsWriting) {
-    const int watch = ::inotify_init1(IN_CLOEXEC);
-    ASSERT_GE(watch, 0);
-    const int folder = ::inotify_add_watch(watch, folder_.path().c_str(),
-                                           IN_CREATE | IN_MODIFY | IN_DELETE | IN_MOVED_TO | IN_CLOSE_WRITE);
-    ASSERT_GE(folder, 0);
-    ::close(watch);
+    int events = 0;
+    {
+        FolderWatch watch(folder_.path());
+        Process whole(folder_.path(), words(arguments));
+        events = watch.wait_for(1 << 30, whole);
+        ASSERT_EQ(whole.wait().status, 0);
+        fs::remove(folder_ / "store.octa");
+    }
+    ASSERT_GT(events, 10);
+    int killed = 0, had_tiles = 0;
+    for (int i = 0; i < kills; ++i) {
+        SCOPED_TRACE(i);
+        {
+            FolderWatch watch(folder_.path());
+            Process bake(folder_.path(), words(arguments));
+            watch.wait_for(1 + events * i / kills, bake);
+            ::kill(bake.id(), SIGKILL);
+            killed += bake.wait().status == 128 + SIGKILL;
+        }
+        had_tiles += expect_resumes() > 0;
+    }
+    EXPECT_GE(killed, kills * 2 / 3);
+    EXPECT_GE(had_tiles, 3);
 }
 
 }  // namespace
