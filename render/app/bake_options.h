@@ -16,8 +16,7 @@ struct BakeCommand {
     std::vector<planet::VerticalDatum> datum;  ///< none: what files say; one for all, or one for each of `sources`
     bool over_earth = false;                   ///< the shipped Earth lies below them; else H = 0
     std::filesystem::path output;
-    bool resume = false, replace = false;
-    int threads = 0;
+    std::size_t memory_bytes = std::size_t{1} << 30;  ///< of the whole process
     planet::BakeOptions bake;
     /// Where there is no source the sea is drawn by the least cells: at level 18 their middle is some 20 m low. Nothing:
     /// that, or the finest level if it is coarser.

@@ -26,7 +26,7 @@ using planet::Error;
 using planet::Fault;
 using Where = std::string_view;
 
-constexpr std::size_t least_memory = std::size_t{16} << 20, most_memory = std::size_t{1} << 40;
+constexpr std::size_t least_memory = std::size_t{96} << 20, most_memory = std::size_t{1} << 40;
 
 std::string file_name(Where where, const std::string& text) {
     if (text.empty()) throw Error(Fault::bad_usage, where, "empty file name", "a path");
@@ -75,10 +75,10 @@ void add_store_options(CLI::App& command, BakeCommand& o) {
     add_value(command, "-o,--output", "FILE", "The store, e.g. earth.octa", [&](Where where, const std::string& text) {
         o.output = file_name(where, text);
     })->required();
-    auto* resume = command.add_flag("--resume", o.resume,
+    auto* resume = command.add_flag("--resume", o.bake.resume,
                                     "Go on where a bake of the same sources and options was stopped;\n"
                                     "nothing to do if it was not");
-    command.add_flag("--replace", o.replace, "Give up a store that is there")->excludes(resume);
+    command.add_flag("--replace", o.bake.replace, "Give up a store that is there")->excludes(resume);
     add_value(command, "--density", "LEVELS",
               "Finer than one vertex a sample by so many bisection levels, -20 to 20 [0]",
               [&](Where where, const std::string& text) {
@@ -98,11 +98,11 @@ void add_store_options(CLI::App& command, BakeCommand& o) {
               [&](Where where, const std::string& text) { o.bake.quantum_m = quantum_from_text(where, text); });
     add_value(command, "--threads", "COUNT", "1 to 256; 0: as many as there are processors [0]",
               [&](Where where, const std::string& text) {
-                  o.threads = static_cast<int>(parse_whole(where, text, 0, 256));
+                  o.bake.threads = static_cast<int>(parse_whole(where, text, 0, 256));
               });
     add_value(command, "--memory", "BYTES", "Limit of the memory used, e.g. 512MiB [1GiB]",
               [&](Where where, const std::string& text) {
-                  o.bake.memory_bytes = parse_memory(where, text, least_memory, most_memory);
+                  o.memory_bytes = parse_memory(where, text, least_memory, most_memory);
               });
 }
 
@@ -117,7 +117,8 @@ void fill(Report& report, const BakeCommand& command, const planet::BakeReport& 
     report.set("tiles", baked.tiles);
     report.set("tile_bytes", baked.tile_bytes);
     report.set("vertices", baked.vertices);
-    report.set("vertices_per_second", static_cast<double>(baked.vertices) / seconds);
+    report.set("vertices_baked", baked.vertices - baked.vertices_resumed);
+    report.set("vertices_per_second", static_cast<double>(baked.vertices - baked.vertices_resumed) / seconds);
     report.set("finest_level", baked.finest_level);
     report.set("spacing_m", spacing_of_level(command.bake.ellipsoid, baked.finest_level));
     report.set("quantum_m", baked.quantum_m);
@@ -135,9 +136,10 @@ void print(const BakeCommand& command, const planet::BakeReport& baked, const pl
                                             four_digits(seconds) + " s, " + bytes_text(peak_memory_bytes()) +
                                             " of memory"}};
     rows.push_back({"tiles", grouped(baked.tiles)});
-    rows.push_back({"vertices", grouped(baked.vertices) + ", " +
-                                    grouped(static_cast<std::size_t>(static_cast<double>(baked.vertices) / seconds)) +
-                                    " a second"});
+    const std::uint64_t now = baked.vertices - baked.vertices_resumed;
+    rows.push_back({"vertices",
+                    grouped(baked.vertices) + (baked.vertices_resumed > 0 ? ", " + grouped(now) + " of them now" : "") +
+                        ", " + grouped(static_cast<std::size_t>(static_cast<double>(now) / seconds)) + " a second"});
     rows.push_back({"finest", "bisection level " + std::to_string(baked.finest_level) + ", " +
                                   four_digits(spacing_of_level(command.bake.ellipsoid, baked.finest_level)) +
                                   " m between vertices"});
@@ -161,17 +163,27 @@ void set_levels(BakeCommand& command) {
     command.bake.least_level = least;
 }
 
+/// What the program and GDAL take up themselves; the bake and the sources share the rest.
+constexpr std::size_t program_memory = std::size_t{56} << 20;
+
+void tell_finished(const BakeCommand& command, Report& report) {
+    std::cout << command.output.native() << " is finished\n";
+    report.set("output", command.output.native());
+    report.set("vertices_baked", 0);
+    report.write();
+}
+
 void run(BakeCommand& command) {
     Report report("bake", command.json);
     set_levels(command);
-    const BakeTarget target = check_bake_target(command.output, command.resume, command.replace);
+    const std::size_t shared = command.memory_bytes - program_memory;
+    command.bake.memory_bytes = shared / 2;
+    check_bake_sources(command);
+    const BakeTarget target = check_bake_target(command.output, command.bake.resume, command.bake.replace);
     if (command.sources.empty() && !command.over_earth && target != BakeTarget::finished)
         throw Error(Fault::bad_usage, "bake", "no sources", "files, patterns or --base earth");
-    if (target == BakeTarget::finished) {
-        std::cout << command.output.native() << " is finished\n";
-        report.set("output", command.output.native());
-        report.set("resumed", true);
-        report.write();
+    if (target == BakeTarget::finished && command.sources.empty() && !command.over_earth) {
+        tell_finished(command, report);
         return;
     }
     const auto start = std::chrono::steady_clock::now();
@@ -179,14 +191,19 @@ void run(BakeCommand& command) {
     const auto geoid = std::make_shared<const planet::Geoid>(data_file("egm96-15.pgm"));
     const auto field = [&] {
         const auto step = report.step("sources");
-        progress.update("sources", std::nan(""));
-        return open_bake_sources(command, geoid);
+        return open_bake_sources(command, geoid, shared / 2,
+                                 [&](double fraction) { progress.update("sources", fraction); });
     }();
     set_geoid(command.bake, geoid);
     command.bake.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };
     command.bake.resume = command.resume;
     command.bake.replace = command.replace;
     const planet::BakeReport baked = planet::bake(*field, command.bake, command.output);
+    if (target == BakeTarget::finished) {  // of these sources and options, else it were refused
+        progress.clear();
+        tell_finished(command, report);
+        return;
+    }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     progress.clear();
     print(command, baked, *field, seconds);

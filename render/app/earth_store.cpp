@@ -15,7 +15,7 @@ planet::BakeOptions options_for(const Earth& earth, const std::function<void(std
     planet::BakeOptions options;
     set_geoid(options, earth.geoid);
     options.progress = progress;
-    options.memory_bytes = std::size_t{4} << 30;
+    options.replace = true;  // what another process of the same number may have left
     return options;
 }
 
@@ -24,13 +24,14 @@ std::shared_ptr<const ElevationStore> bake_to(const std::filesystem::path& file,
                                               const planet::BakeOptions& options) {
     std::filesystem::path temporary = file;
     temporary += "." + std::to_string(::getpid()) + ".baking";
-    std::error_code ignored;
     try {
         planet::bake(*earth.heights, options, temporary);
         std::filesystem::rename(temporary, file);
         return std::make_shared<const ElevationStore>(ElevationStore::open(file));
     } catch (const std::exception&) {
-        std::filesystem::remove(temporary, ignored);
+        std::error_code ignored;
+        for (const char* ending : {"", "-journal", "-finishing", "-finishing-journal"})
+            std::filesystem::remove(temporary.native() + ending, ignored);
         return nullptr;
     }
 }

@@ -9,7 +9,10 @@
 #include <csignal>
 
 #include "planet/elevation/constant_field.h"
+#include "planet/octahedron/octahedron_map.h"
 #include "planet/store/bake.h"
+#include "render/app/bake_sources.h"
+#include "render/app/earth_store.h"
 #include "tests/render/app/baked_store.h"
 
 namespace render {
@@ -219,6 +222,136 @@ TEST(StoreRefusal, ADamagedFaceIsNamed) {
     const Outcome outcome = run(folder.path(), words("info bad.octa"));
     expect_one_line(outcome, 3, "bad.octa: tile " + planet::to_string(root) + " is damaged", "info");
     EXPECT_EQ(run(folder.path(), words("verify bad.octa")).status, 1);
+}
+
+/// Bakes dem.vrt into bad.octa as the program does, and stops half-way.
+void bake_half(const StoreFolder& folder) {
+    BakeCommand command;
+    command.sources = {(folder / "dem.vrt").native()};
+    const auto geoid = std::make_shared<const planet::Geoid>(OCTAGLOBE_SOURCE_DIR "/data/egm96-15.pgm");
+    set_geoid(command.bake, geoid);
+    command.bake.finest_level = 25;
+    command.bake.least_level = 12;
+    command.bake.transaction_tiles = 4;
+    struct Stop {};
+    command.bake.progress = [](std::string_view step, double fraction) {
+        if (step == "tiles" && fraction > 0.9) throw Stop();
+    };
+    const auto field = open_bake_sources(command, geoid, std::size_t{64} << 20, {});
+    EXPECT_THROW(planet::bake(*field, command.bake, folder / "bad.octa"), Stop);
+}
+
+TEST(StoreRefusal, AnUnfinishedStoreIsNotDrawn) {
+    const StoreFolder folder;
+    bake_half(folder);
+    const auto before = folder.names();
+    for (const char* arguments :
+         {"query height 49.84,10.2 --store bad.octa", "render --store bad.octa -o x.png --size 64x64",
+          "mesh --planet --store bad.octa --max-deviation 1000 -o x.ply"}) {
+        const Outcome outcome = run(folder.path(), words(arguments));
+        expect_one_line(outcome, 3, "bad.octa: ", arguments);
+        EXPECT_NE(outcome.err.find("--resume"), std::string::npos) << outcome.err;
+    }
+    const Outcome refused = run(folder.path(), words("bake dem.vrt -o bad.octa"));
+    expect_one_line(refused, 2, "--output: 'bad.octa' is a store that is not finished; accepted: --resume", "bake");
+    EXPECT_EQ(folder.names(), before);
+    EXPECT_EQ(run(folder.path(), words("verify bad.octa")).status, 0);
+    ASSERT_EQ(run(folder.path(), words("info bad.octa --json i.json")).status, 0);
+    const auto info = nlohmann::json::parse(content(folder / "i.json"));
+    EXPECT_EQ(info.at("complete"), false);
+    EXPECT_GT(info.at("done"), 0);
+    EXPECT_LT(info.at("done"), 1);
+    EXPECT_GT(info.at("tiles_planned"), info.at("tiles"));
+}
+
+// What a store was begun with is what it goes on with.
+TEST(StoreRefusal, ResumingWithOtherSourcesOrOptions) {
+    const StoreFolder folder;
+    bake_half(folder);
+    const std::string bytes = content(folder / "bad.octa");
+    const std::string same = "--finest-level 25 --least-level 12 --resume -o bad.octa";
+    Terrain other = hilly_terrain();
+    other.height_m = [](int column, int row) { return hills(column, row) + (column == 7 && row == 9 ? 1 : 0); };
+    other.write(folder / "other.vrt");
+    Terrain voids = hilly_terrain();
+    voids.band = "<NoDataValue>-9999</NoDataValue>";
+    voids.height_m = [](int, int) { return -9999.0; };
+    voids.write(folder / "void.vrt");
+    const auto expect = [&](const std::string& arguments, int status, const std::string& start, const char* part) {
+        const Outcome outcome = run(folder.path(), words("bake " + arguments));
+        expect_one_line(outcome, status, start, arguments);
+        EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+        EXPECT_EQ(content(folder / "bad.octa"), bytes) << arguments;
+    };
+    expect("other.vrt " + same, 2, "bad.octa: ", "source 1 dem.vrt");
+    expect("dem.vrt other.vrt " + same, 2, "bad.octa: ", "source 2 other.vrt");
+    expect("dem.vrt --datum ellipsoid " + same, 2, "bad.octa: ", "source 1 dem.vrt");
+    expect("dem.vrt --density 1 " + same, 2, "bad.octa: ", "extra levels 0, not 1");
+    expect("dem.vrt --quantum 1 " + same, 2, "bad.octa: ", "quantum");
+    expect("dem.vrt --finest-level 24 --least-level 12 --resume -o bad.octa", 2,
+           "bad.octa: ", "finest level 25, not 24");
+    expect("missing.vrt " + same, 3, "missing.vrt: ", "");
+    expect("void.vrt " + same, 3, "void.vrt: ", "");
+    expect(same, 2, "bake: no sources", "");
+    fs::rename(folder / "other.vrt.raw", folder / "dem.vrt.raw");  // its content changes
+    expect("dem.vrt " + same, 2, "bad.octa: ", "source 1 dem.vrt");
+    hilly_terrain().write(folder / "dem.vrt");
+    EXPECT_EQ(run(folder.path(), words("bake dem.vrt " + same)).status, 0);
+    EXPECT_EQ(rows_of(folder / "bad.octa"), rows_of(folder / "store.octa"));
+}
+
+// A limit of the size of files stands for a full disk: what SQLite is told is that bytes cannot be written.
+TEST(StoreRefusal, FullDisk) {
+    const StoreFolder folder;
+    const std::string arguments = "bake dem.vrt --finest-level 25 --least-level 12 -o bad.octa --json r.json";
+    const std::size_t whole = folder.store().size();
+    for (const std::size_t limit :
+         {std::size_t{0}, std::size_t{20'000}, std::size_t{70'000}, whole / 2, whole - 20'000}) {
+        SCOPED_TRACE(limit);
+        const Outcome outcome = run(folder.path(), words(arguments), [&] {
+            const rlimit size{limit, limit};
+            ::setrlimit(RLIMIT_FSIZE, &size);
+            std::signal(SIGXFSZ, SIG_IGN);
+        });
+        if (limit == 0) {  // nor can the line that says so be written
+            EXPECT_EQ(outcome.status, 3);
+        } else {
+            expect_one_line(outcome, 3, "bad.octa: the disk is full", "bake");
+        }
+        EXPECT_FALSE(fs::exists(folder / "r.json"));
+        if (fs::exists(folder / "bad.octa") && fs::file_size(folder / "bad.octa") > 0) {
+            EXPECT_FALSE(planet::ElevationStore::open(folder / "bad.octa").metadata().complete);
+        }
+        EXPECT_EQ(run(folder.path(), words(arguments + " --resume")).status, 0);
+        EXPECT_EQ(rows_of(folder / "bad.octa"), rows_of(folder / "store.octa"));
+        EXPECT_EQ(folder.names(), (std::vector<std::string>{"bad.octa", "bake.json", "dem.vrt", "dem.vrt.raw", "r.json",
+                                                            "store.octa"}));
+        fs::remove(folder / "r.json");
+        fs::remove(folder / "bad.octa");
+    }
+}
+
+// As another user, for whom rights count, if this one may do everything.
+TEST(StoreRefusal, WhatMayNotBeWritten) {
+    const StoreFolder folder;
+    bake_half(folder);
+    fs::permissions(folder / "bad.octa", fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read);
+    fs::permissions(folder.path(), fs::perms(0555));
+    const auto prepare = [] {
+        if (::geteuid() == 0 && (::setgid(65534) != 0 || ::setuid(65534) != 0)) ::_exit(97);
+    };
+    const auto may = [&](const std::string& arguments) { return run(folder.path(), words(arguments), prepare); };
+    if (may("--version").status != 0) GTEST_SKIP() << "the program cannot be run as another user";
+    const Outcome begun = may("bake dem.vrt -o new.octa");
+    expect_one_line(begun, 2, "--output: 'new.octa' cannot be written", "new.octa");
+    const Outcome resumed = may("bake dem.vrt --finest-level 25 --least-level 12 --resume -o bad.octa");
+    EXPECT_NE(resumed.status, 0);
+    EXPECT_TRUE(resumed.err.starts_with("octaglobe: ")) << resumed.err;
+    EXPECT_EQ(std::count(resumed.err.begin(), resumed.err.end(), '\n'), 1) << resumed.err;
+    for (const char* arguments : {"info store.octa", "verify store.octa", "query height 49.84,10.2 --store store.octa",
+                                  "info bad.octa", "verify bad.octa"})
+        EXPECT_EQ(may(arguments).status, 0) << arguments << may(arguments).err;
+    fs::permissions(folder.path(), fs::perms(0755));
 }
 
 TEST(StoreRefusal, BadBakes) {
