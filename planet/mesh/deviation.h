@@ -119,7 +119,8 @@ double corner_distance(const TileLattice& lattice, unsigned i);
 void corner_radii(const TileLattice& lattice, std::span<const std::uint8_t> exists, bool inner,
                   std::span<const std::uint8_t> lacks_below, std::span<float> radius);
 
-/// own_deviation() and corner_radii() of a tile without tiles below it, faster than one after the other.
+/// The records that a tile without tiles below it starts from: own_deviation(), and the radius of every existing cell
+/// that lacks a child diamond: corner_distance(), rounded up; else 0. @param exists, deviation, radius by local index
 void measure_leaf(const TileLattice& lattice, std::span<const std::uint8_t> exists, std::span<float> deviation,
                   std::span<float> radius);
 

@@ -31,6 +31,10 @@ inline Lanes larger(Lanes a, Lanes b) {
     return a > b ? a : b;
 }
 
+inline Lanes smaller(Lanes a, Lanes b) {
+    return a < b ? a : b;
+}
+
 inline Lanes square_root(Lanes v) {
     double each[lane_count];
     std::memcpy(each, &v, sizeof v);
@@ -43,6 +47,10 @@ inline Lanes load_lanes(const double* from) {
     Lanes v;
     std::memcpy(&v, from, sizeof v);
     return v;
+}
+
+inline void store_lanes(const Lanes& v, double* to) {
+    std::memcpy(to, &v, sizeof v);
 }
 
 /// Lane w is at(w).

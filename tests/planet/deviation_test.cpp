@@ -7,6 +7,7 @@
 #include <set>
 
 #include "planet/mesh/saturation.h"
+#include "planet/store/baked_tile.h"
 #include "planet/store/tile_sides.h"
 
 namespace planet {
@@ -192,8 +193,9 @@ TEST(Deviation, HullBoundsEveryPlaneAndIsNotLoose) {
                 double corner = 0;
                 for (std::size_t k = 0; k < 3; ++k)
                     corner = std::max(corner, std::abs(plane.above(t.lattice.position(k), t.lattice.normal(k))));
-                if (root.bisection_level() > 0)
+                if (root.bisection_level() > 0) {
                     EXPECT_LT(bound, 1.3 * corner + 2000) << name << " " << depth << " " << level;
+                }
                 EXPECT_FALSE(hull.may_exceed(plane, certified_deviation(bound)));
                 EXPECT_TRUE(hull.may_exceed(plane, static_cast<float>(0.99 * found)));
             }
