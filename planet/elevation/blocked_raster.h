@@ -10,7 +10,7 @@
 
 namespace planet {
 
-/// Holds nothing but the survey and what the cache keeps. Blocks have survey_step samples a side and as many beside them as
+/// Holds nothing but the survey and what the cache keeps. Blocks have block_size samples a side and as many beside them as
 /// interpolation needs, so that few positions need more than one.
 class BlockedRaster final : public RasterSamples {
   public:
@@ -25,7 +25,11 @@ class BlockedRaster final : public RasterSamples {
     SampleView view(int column, int row) const override;
     const RasterSurvey& survey() const { return survey_; }
 
+    /// Samples a side of a block.
+    static constexpr int block_size = 256;
+
   private:
+    void survey_all(const std::function<void(double)>& progress);
     SampleBlock read_block(int column, int row) const;
     SampleBlock read_window(const SampleWindow& window) const;
     std::string checksum_of_samples() const;

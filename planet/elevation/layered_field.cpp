@@ -13,7 +13,9 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t piece = 4096;
-constexpr std::size_t most_points = std::size_t{1} << 18;  // of a blend: 17 MB
+constexpr std::size_t most_points = std::size_t{1} << 19;  // of a whole blend: 45 MB
+constexpr std::size_t most_in_region = std::size_t{1} << 17;
+constexpr std::size_t probe = 64;  // of so many border points one is counted
 constexpr Cap everywhere{{0, 0, 1}, 4};
 
 }  // namespace
@@ -129,22 +131,42 @@ double LayeredField::reach_around(std::size_t layer, const glm::dvec3& normal) c
 RegionalBlend LayeredField::make_blend(std::size_t layer, std::size_t bytes) const {
     const std::size_t points = layers_[layer]->border_size();
     const double reach = reaches_[layer];
-    if (points <= most_points || !RegionalBlend::has_regions(reach))
-        return RegionalBlend(blend_in(layer, everywhere, (points + most_points - 1) / most_points));
-    // A little more than the reach, for the clearance.
-    return {[this, layer](const Cap& cap) { return blend_in(layer, cap, 1); }, 1.1 * reach, bytes};
+    if (points > most_points && RegionalBlend::has_regions(reach)) {
+        const auto make = [this, layer](const Cap& region, const Cap& around) {
+            return blend_of_region(layer, region, around);
+        };
+        return {make, 1.1 * reach, bytes};  // a little more than the reach, for the clearance
+    }
+    const std::size_t every = std::max<std::size_t>(1, (points + most_points - 1) / most_points);
+    std::vector<glm::dvec3> normals;
+    layers_[layer]->border(everywhere, every, normals);
+    return RegionalBlend(blend_of(layer, normals, 0, every));
 }
 
-BorderBlend LayeredField::blend_in(std::size_t layer, const Cap& cap, std::size_t every) const {
-    std::vector<glm::dvec3> normals;
-    every = std::max<std::size_t>(every, 1);
-    layers_[layer]->border(cap, every, normals);
-    while (normals.size() > most_points) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < normals.size(); i += 2) normals[kept++] = normals[i];
-        normals.resize(kept);
-        every *= 2;
+BorderBlend LayeredField::blend_of_region(std::size_t layer, const Cap& region, const Cap& around) const {
+    const ElevationField& field = *layers_[layer];
+    std::vector<glm::dvec3> normals, far;
+    field.border(around, probe, far);
+    if (far.size() * probe <= most_in_region) {
+        field.border(around, 1, normals);
+        return blend_of(layer, normals, normals.size(), 1);
     }
+    // Nearer points by as much as they are too many, if they were spread evenly.
+    const std::size_t every = far.size() * probe / most_in_region + 1;
+    Cap near = around;
+    near.angle = std::max(region.angle, around.angle / std::sqrt(static_cast<double>(every)));
+    far.clear();
+    field.border(near, 1, normals);
+    field.border(around, every, far);
+    const std::size_t single = normals.size();
+    const double chord = 2 * std::sin(0.5 * near.angle);
+    for (const glm::dvec3& n : far)
+        if (glm::distance(n, near.centre) > chord) normals.push_back(n);
+    return blend_of(layer, normals, single, every);
+}
+
+BorderBlend LayeredField::blend_of(std::size_t layer, std::span<const glm::dvec3> normals, std::size_t single,
+                                   std::size_t every) const {
     std::vector<float> fine(normals.size()), coarse(normals.size());
     layers_[layer]->heights(normals, fine);
     to_common_datum(*layers_[layer], normals, fine);
@@ -157,12 +179,13 @@ BorderBlend LayeredField::blend_in(std::size_t layer, const Cap& cap, std::size_
         const glm::ivec3 key(glm::floor(normals[i] * 64.0));
         double& reach = reaches[{key.x, key.y, key.z}];
         if (reach == 0) reach = std::min(reach_around(layer, normals[i]), reaches_[layer]);
-        points.push_back({normals[i], static_cast<double>(fine[i]) - static_cast<double>(coarse[i]), reach});
+        points.push_back({normals[i], static_cast<double>(fine[i]) - static_cast<double>(coarse[i]), reach,
+                          i < single ? 1.0 : static_cast<double>(every)});
     }
     // Border points lie half a sample apart along the border; corners are up to 0.36 of one from the nearest.
     double fine_spacing = std::numeric_limits<double>::infinity();
     if (!points.empty()) fine_spacing = layers_[layer]->spacing({points.front().normal, 1e-6});
-    const double clearance = 0.36 * fine_spacing * static_cast<double>(every) / radius_m_;
+    const double clearance = 0.36 * fine_spacing * (single > 0 ? 1.0 : static_cast<double>(every)) / radius_m_;
     return BorderBlend(std::move(points), std::isinf(fine_spacing) ? 0 : clearance);
 }
 

@@ -14,10 +14,11 @@ namespace planet {
 /// answer the height is 0, led up to borders in the same way, over two samples of the layer that ends there: a layered
 /// field answers everywhere.
 ///
-/// The blend of a long border (more than 2^18 points, e.g. of a raster with many voids) is made in regions when places
-/// there are asked for. Where one region has more points than that, or the lower layer's samples are so far apart (160
-/// km) that there are no regions, only every n-th point is kept: the lower layers then meet the border between those
-/// with a mean of what they are short of at the ones around.
+/// The blend of a long border (more than 2^19 points, e.g. of a raster with many voids) is made in regions when places
+/// there are asked for. A region with more than 2^17 points around it keeps the nearest ones, and of the others every
+/// n-th, which then counts n times. Where the lower layer's samples are so far apart (160 km) that there are no regions
+/// every n-th point of all is kept: lower layers then meet the border between those with a mean of what they are short of
+/// at the ones around.
 class LayeredField : public ElevationField {
   public:
     /// The geoid above the ellipsoid at a unit normal. Must be safe from several threads.
@@ -54,7 +55,10 @@ class LayeredField : public ElevationField {
     void hide_covered(std::size_t layer, std::span<const std::size_t> higher, std::span<const glm::dvec3> normals,
                       std::span<float> h) const;
     RegionalBlend make_blend(std::size_t layer, std::size_t bytes) const;
-    BorderBlend blend_in(std::size_t layer, const Cap& cap, std::size_t every) const;
+    BorderBlend blend_of_region(std::size_t layer, const Cap& region, const Cap& around) const;
+    /// Blends points of a layer's border, the first `single` of which count once and the others `every` times.
+    BorderBlend blend_of(std::size_t layer, std::span<const glm::dvec3> normals, std::size_t single,
+                         std::size_t every) const;
     /// No border point of a layer reaches farther than this chord.
     double most_reach(std::size_t layer) const;
     double reach_around(std::size_t layer, const glm::dvec3& normal) const;

@@ -116,32 +116,37 @@ void RasterField::sample_rows(const Cap& cap, const SampleRowVisitor& visit) con
     const double least_cosine = std::cos(std::min(cap.angle, std::numbers::pi));
     const int size = survey_.block_size;
     SampleCursor cursor(*samples_);
-    std::array<glm::dvec3, survey_step> normals;
-    std::array<float, survey_step> heights;
-    const auto row_piece = [&](const SampleView& view, int column, int row, std::size_t n) {
-        map_.normals_of_row(column, row, {normals.data(), n});
-        std::size_t first = 0, last = n;
-        while (first < last && !(glm::dot(normals[first], cap.centre) >= least_cosine)) ++first;
-        while (last > first && !(glm::dot(normals[last - 1], cap.centre) >= least_cosine)) --last;
-        if (first == last) return;
-        const std::span<float> out(heights.data() + first, last - first);
-        const std::ptrdiff_t at = view.index(column + static_cast<int>(first), row);
-        if (view.shorts)
-            to_metres(raster(), view.shorts + at, out);
-        else
-            to_metres(raster(), view.floats + at, out);
-        visit({normals.data() + first, last - first}, out);
-    };
+    std::vector<glm::dvec3> normals(static_cast<std::size_t>(size));
+    std::vector<float> heights(static_cast<std::size_t>(size));
     blocks_.visit(cap, [&](int i, int j, double) {
         const int last_column = std::min((i + 1) * size, survey_.columns);
         const int last_row = std::min((j + 1) * size, raster().height);
-        for (int column = i * size, next; column < last_column; column = next) {
-            next = std::min((column / survey_step + 1) * survey_step, last_column);
-            for (int row = j * size; row < last_row; ++row)
-                row_piece(cursor.at(column, row), column, row, static_cast<std::size_t>(next - column));
+        const SampleMap::RowsInCap in_cap(map_, i * size, last_column - i * size, cap.centre, least_cosine);
+        for (int row = j * size; row < last_row; ++row) {
+            const auto [first, last] = in_cap.find(row);
+            if (first == last) continue;
+            const auto n = static_cast<std::size_t>(last - first);
+            map_.normals_of_row(i * size + first, row, {normals.data(), n});
+            heights_of_row(cursor, i * size + first, row, {heights.data(), n});
+            visit({normals.data(), n}, {heights.data(), n});
         }
         return std::numeric_limits<double>::infinity();
     });
+}
+
+// A row may lie in several views.
+void RasterField::heights_of_row(SampleCursor& cursor, int column, int row, std::span<float> out) const {
+    while (!out.empty()) {
+        const SampleView& view = cursor.at(column, row);
+        const auto n = std::min(out.size(), static_cast<std::size_t>(view.core.column + view.core.columns - column));
+        const std::ptrdiff_t at = view.index(column, row);
+        if (view.shorts)
+            to_metres(raster(), view.shorts + at, out.first(n));
+        else
+            to_metres(raster(), view.floats + at, out.first(n));
+        out = out.subspan(n);
+        column += static_cast<int>(n);
+    }
 }
 
 void RasterField::samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const {

@@ -39,6 +39,7 @@ class RasterField : public ElevationField {
   private:
     double spacing_at(glm::dvec2 sample) const;
     RasterBlocks::Block make_block(int column, int row) const;
+    void heights_of_row(SampleCursor& cursor, int column, int row, std::span<float> out) const;
     void add_border_of_row(SampleCursor& cursor, int row, int first_column, int columns,
                            std::vector<glm::dvec2>& at) const;
     bool may_have_border(int block_column, int block_row) const;

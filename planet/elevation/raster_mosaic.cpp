@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "planet/elevation/raster_survey.h"
 #include "planet/error.h"
 
 namespace planet {
@@ -12,6 +11,7 @@ namespace {
 
 constexpr std::size_t most_idle = 16;     // open files that nobody reads from
 constexpr std::size_t most_checked = 16;  // files of a part that are looked at whenever it is read
+constexpr int window_columns = 260;       // of a block of samples with those beside it
 constexpr double slack = 0.02;            // samples; georeferences are written with few digits
 
 template <class Sample>
@@ -51,7 +51,7 @@ MosaicPart mosaic_part(const std::string& path, const RasterOptions& options) {
     part.window = {0, 0, part.header.width, part.header.height};
     part.files = reader->files();
     part.may_be_shorts = reader->may_be_shorts();
-    part.decoded_bytes = reader->decoded_bytes(survey_step + 3);
+    part.decoded_bytes = reader->decoded_bytes(window_columns);
     part.natural_columns = reader->natural_columns();
     part.natural_rows = reader->natural_rows();
     return part;

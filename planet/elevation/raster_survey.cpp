@@ -1,7 +1,6 @@
 #include "planet/elevation/raster_survey.h"
 
 #include <algorithm>
-#include <array>
 
 namespace planet {
 namespace {
@@ -17,151 +16,138 @@ int block_size_for(int columns, int rows) {
     return size;
 }
 
-class Surveyor {
-  public:
-    explicit Surveyor(const RasterSamples& samples)
-        : raster_(samples.header()), cursor_(samples), around_(columns_around(raster_)), poles_(poles_of(raster_)) {
-        out_.columns = around_ > 0 ? around_ : raster_.width;
-        out_.block_size = block_size_for(out_.columns, raster_.height);
-        out_.block_columns = (out_.columns + out_.block_size - 1) / out_.block_size;
-        out_.block_rows = (raster_.height + out_.block_size - 1) / out_.block_size;
-        held_.resize(static_cast<std::size_t>(out_.block_columns) * static_cast<std::size_t>(out_.block_rows));
-    }
+bool is_held(std::int16_t s) {
+    return s != void_sample;
+}
+bool is_held(float f) {
+    return f == f;
+}
 
-    // A square of survey_step samples or what is left of one; all of it and its neighbours are in one view.
-    void add_square(int first_column, int first_row) {
-        cursor_.at(first_column, first_row);
-        const int columns = std::min(survey_step, out_.columns - first_column);
-        const int rows = std::min(survey_step, raster_.height - first_row);
-        line(first_row - 1, first_column, columns, above_);
-        line(first_row, first_column, columns, here_);
-        for (int row = first_row; row < first_row + rows; ++row) {
-            line(row + 1, first_column, columns, below_);
-            add_line(row, first_column, columns);
-            std::swap(above_, here_);
-            std::swap(here_, below_);
-        }
-    }
+template <class Sample>
+void mark_samples(const Sample* samples, std::span<std::uint8_t> held) {
+    for (std::size_t i = 0; i < held.size(); ++i) held[i] = is_held(samples[i]) ? 1 : 0;
+}
 
-    RasterSurvey finish() {
-        for (std::size_t i = 0; i < held_.size(); ++i) {
-            const int size = out_.block_size;
-            const auto column = static_cast<int>(i % static_cast<std::size_t>(out_.block_columns)) * size;
-            const auto row = static_cast<int>(i / static_cast<std::size_t>(out_.block_columns)) * size;
-            const std::int64_t all = std::int64_t{std::min(size, out_.columns - column)} *
-                                     std::int64_t{std::min(size, raster_.height - row)};
-            out_.fill.push_back(held_[i] == 0     ? RasterSurvey::Fill::none
-                                : held_[i] == all ? RasterSurvey::Fill::all
-                                                  : RasterSurvey::Fill::some);
-        }
-        if (poles_.first != PoleRow::none) out_.first_mean = mean_of_row(0);
-        if (poles_.last != PoleRow::none) out_.last_mean = mean_of_row(raster_.height - 1);
-        return std::move(out_);
-    }
-
-  private:
-    // Whether samples hold a height: of the columns, with one more on both sides, and how many.
-    struct Line {
-        std::array<std::uint8_t, survey_step + 2> held;
-        int count = 0;  // without the two
-    };
-
-    void line(int row, int first_column, int columns, Line& line) const {
-        const auto n = static_cast<std::size_t>(columns);
-        const bool beyond_pole =
-            (row < 0 && poles_.first != PoleRow::none) || (row >= raster_.height && poles_.last != PoleRow::none);
-        if (row < 0 || row >= raster_.height) {
-            line.held.fill(beyond_pole ? 1 : 0);
-            line.count = beyond_pole ? columns : 0;
-            return;
-        }
-        const SampleView& view = cursor_.view();
-        const std::ptrdiff_t first = view.index(first_column, row);
-        std::uint8_t* const held = line.held.data() + 1;
-        if (view.shorts)
-            for (std::size_t i = 0; i < n; ++i)
-                held[i] = view.shorts[first + static_cast<std::ptrdiff_t>(i)] != void_sample;
-        else
-            for (std::size_t i = 0; i < n; ++i) {
-                const float f = view.floats[first + static_cast<std::ptrdiff_t>(i)];
-                held[i] = f == f;
-            }
-        line.count = 0;
-        for (std::size_t i = 0; i < n; ++i) line.count += held[i];
-        line.held[0] = neighbour(first_column - 1, row);
-        held[n] = neighbour(first_column + columns, row);
-    }
-
-    std::uint8_t neighbour(int column, int row) const {
-        if (around_ > 0) column = (column + around_) % around_;
-        return column >= 0 && column < out_.columns && !std::isnan(cursor_.raw(column, row));
-    }
-
-    void add_line(int row, int first_column, int columns) {
-        const auto n = static_cast<std::size_t>(columns);
-        if (here_.count == 0) return;
-        const bool whole = here_.count == columns;
-        if (!(whole && above_.count == columns && below_.count == columns && here_.held[0] && here_.held[n + 1]))
-            for (std::size_t i = 1; i <= n; ++i)
-                if (here_.held[i])
-                    out_.border_sides += static_cast<std::size_t>(4 - here_.held[i - 1] - here_.held[i + 1] -
-                                                                  above_.held[i] - below_.held[i]);
-        std::int64_t* const blocks = held_.data() + static_cast<std::size_t>(row / out_.block_size) *
-                                                        static_cast<std::size_t>(out_.block_columns);
-        for (int column = first_column; column < first_column + columns;) {
-            const int block = column / out_.block_size;
-            const int end = std::min((block + 1) * out_.block_size, first_column + columns);
-            int count = whole ? end - column : 0;
-            for (; !whole && column < end; ++column)
-                count += here_.held[static_cast<std::size_t>(column - first_column) + 1];
-            column = end;
-            blocks[block] += count;
-        }
-    }
-
-    float mean_of_row(int row) {
-        const float zero = static_cast<float>(-raster_.offset / raster_.scale);
-        double total = 0;
-        int count = 0;
-        for (int column = 0; column < around_; ++column) {
-            const float v = cursor_.at(column, row).raw(column, row);
-            if (std::isnan(v)) continue;
-            total += static_cast<double>(std::isinf(v) ? zero : v);
-            ++count;
-        }
-        return count > 0 ? static_cast<float>(total / count) : std::numeric_limits<float>::quiet_NaN();
-    }
-
-    const RasterHeader& raster_;
-    SampleCursor cursor_;
-    int around_;
-    Poles poles_;
-    RasterSurvey out_;
-    std::vector<std::int64_t> held_;  // by block: how many samples hold a height
-    Line above_, here_, below_;
-};
+std::size_t sum(std::span<const std::uint8_t> held) {
+    std::size_t count = 0;
+    for (const std::uint8_t h : held) count += h;
+    return count;
+}
 
 }  // namespace
+
+Surveyor::Surveyor(const RasterHeader& raster)
+    : raster_(raster), around_(columns_around(raster)), poles_(poles_of(raster)) {
+    out_.columns = around_ > 0 ? around_ : raster.width;
+    out_.block_size = block_size_for(out_.columns, raster.height);
+    out_.block_columns = (out_.columns + out_.block_size - 1) / out_.block_size;
+    out_.block_rows = (raster.height + out_.block_size - 1) / out_.block_size;
+    counts_.resize(static_cast<std::size_t>(out_.block_columns) * static_cast<std::size_t>(out_.block_rows));
+    row_above_.assign(static_cast<std::size_t>(out_.columns), poles_.first != PoleRow::none ? 1 : 0);
+}
+
+void Surveyor::add(const SampleView& view) {
+    const SampleWindow& w = view.window;
+    const int columns = std::min(w.columns, out_.columns - w.column);
+    if (columns <= 0) return;
+    const auto n = static_cast<std::size_t>(columns), rows = static_cast<std::size_t>(w.rows);
+    held_.resize(n);
+    if (w.column == 0) {
+        left_.assign(rows, 0);
+        first_.assign(rows, 0);
+    }
+    for (std::size_t r = 0; r < rows; ++r) {
+        const int row = w.row + static_cast<int>(r);
+        mark(view, row, held_);
+        if (w.column == 0) {
+            first_[r] = held_[0];
+            if (around_ > 0) left_[r] = held_[0];  // its true neighbour is compared at the other end
+        }
+        out_.border_sides += left_[r] != held_[0] ? 1 : 0;
+        left_[r] = held_[n - 1];
+        if (w.column + columns == out_.columns) {
+            const std::uint8_t beyond = around_ > 0 ? first_[r] : 0;
+            out_.border_sides += beyond != held_[n - 1] ? 1 : 0;
+        }
+        count_border(w.column, row, held_);
+        count_blocks(w.column, row, held_);
+        add_to_means(view, row);
+    }
+}
+
+void Surveyor::mark(const SampleView& view, int row, std::span<std::uint8_t> held) const {
+    const std::ptrdiff_t first = view.index(view.window.column, row);
+    if (view.shorts)
+        mark_samples(view.shorts + first, held);
+    else
+        mark_samples(view.floats + first, held);
+}
+
+// Sides between neighbours of a row, and to the row above.
+void Surveyor::count_border(int column, int row, std::span<const std::uint8_t> held) {
+    const std::span<std::uint8_t> above = std::span(row_above_).subspan(static_cast<std::size_t>(column), held.size());
+    std::size_t sides = 0;
+    for (std::size_t i = 1; i < held.size(); ++i) sides += held[i] ^ held[i - 1];
+    for (std::size_t i = 0; i < held.size(); ++i) sides += held[i] ^ above[i];
+    if (row == raster_.height - 1 && poles_.last == PoleRow::none) sides += sum(held);
+    // Beyond a pole the raster goes on: there is no side, whatever is there.
+    if (row == 0 && poles_.first != PoleRow::none) sides -= held.size() - sum(held);
+    std::copy(held.begin(), held.end(), above.begin());
+    out_.border_sides += sides;
+}
+
+void Surveyor::count_blocks(int column, int row, std::span<const std::uint8_t> held) {
+    std::int64_t* const counts =
+        counts_.data() + static_cast<std::size_t>(row / out_.block_size) * static_cast<std::size_t>(out_.block_columns);
+    for (std::size_t i = 0; i < held.size();) {
+        const int at = column + static_cast<int>(i), block = at / out_.block_size;
+        const auto end = std::min(held.size(), i + static_cast<std::size_t>((block + 1) * out_.block_size - at));
+        counts[block] += static_cast<std::int64_t>(sum(held.subspan(i, end - i)));
+        i = end;
+    }
+}
+
+void Surveyor::add_to_means(const SampleView& view, int row) {
+    const bool first = row == 0 && poles_.first != PoleRow::none;
+    const bool last = row == raster_.height - 1 && poles_.last != PoleRow::none;
+    if (!first && !last) return;
+    const float zero = static_cast<float>(-raster_.offset / raster_.scale);
+    Mean& mean = first ? first_mean_ : last_mean_;
+    const SampleWindow& w = view.window;
+    for (int column = w.column; column < std::min(w.column + w.columns, out_.columns); ++column) {
+        const float v = view.raw(column, row);
+        if (std::isnan(v)) continue;
+        mean.sum += static_cast<double>(std::isinf(v) ? zero : v);
+        ++mean.count;
+    }
+}
+
+RasterSurvey Surveyor::finish() {
+    for (int j = 0; j < out_.block_rows; ++j)
+        for (int i = 0; i < out_.block_columns; ++i) {
+            const int size = out_.block_size;
+            const std::int64_t held = counts_[out_.fill.size()];
+            const std::int64_t all = std::int64_t{std::min(size, out_.columns - i * size)} *
+                                     std::int64_t{std::min(size, raster_.height - j * size)};
+            out_.fill.push_back(held == 0     ? RasterSurvey::Fill::none
+                                : held == all ? RasterSurvey::Fill::all
+                                              : RasterSurvey::Fill::some);
+        }
+    const auto mean = [](const Mean& m) {
+        return m.count > 0 ? static_cast<float>(m.sum / m.count) : std::numeric_limits<float>::quiet_NaN();
+    };
+    out_.first_mean = mean(first_mean_);
+    out_.last_mean = mean(last_mean_);
+    return std::move(out_);
+}
 
 bool RasterSurvey::empty() const {
     return std::all_of(fill.begin(), fill.end(), [](Fill f) { return f == Fill::none; });
 }
 
-RasterSurvey survey(const RasterSamples& samples, const SurveyOrder& order,
-                    const std::function<void(double)>& progress) {
-    Surveyor surveyor(samples);
-    const RasterHeader& raster = samples.header();
-    const int around = columns_around(raster);
-    const int columns = around > 0 ? around : raster.width;
-    const std::int64_t across = std::int64_t{order.columns} * survey_step,
-                       down = std::int64_t{order.rows} * survey_step;
-    for (std::int64_t row = 0; row < raster.height; row += down) {
-        for (std::int64_t column = 0; column < columns; column += across)
-            for (std::int64_t r = row; r < std::min<std::int64_t>(row + down, raster.height); r += survey_step)
-                for (std::int64_t c = column; c < std::min<std::int64_t>(column + across, columns); c += survey_step)
-                    surveyor.add_square(static_cast<int>(c), static_cast<int>(r));
-        if (progress) progress(static_cast<double>(std::min<std::int64_t>(row + down, raster.height)) / raster.height);
-    }
+RasterSurvey survey(const RasterSamples& whole) {
+    Surveyor surveyor(whole.header());
+    surveyor.add(whole.view(0, 0));
     return surveyor.finish();
 }
 

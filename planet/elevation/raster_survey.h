@@ -2,7 +2,7 @@
 // What is known of a raster after one look at every sample.
 
 #include <cstdint>
-#include <functional>
+#include <span>
 #include <vector>
 
 #include "planet/elevation/raster_samples.h"
@@ -31,17 +31,36 @@ struct RasterSurvey {
     bool empty() const;
 };
 
-/// The order in which a survey asks for samples: squares of `step` samples, row by row, in groups of this many a side.
-/// A group should match what a file decodes at once.
-struct SurveyOrder {
-    int columns = 1, rows = 1;
+/// Collects a survey from windows of samples.
+class Surveyor {
+  public:
+    explicit Surveyor(const RasterHeader& raster);
+
+    /// Windows come in bands, from the first row to the last; in a band they have the same rows and go from the first
+    /// column to the last, without gaps. @param view  its window; one that goes around may have the repeated column
+    void add(const SampleView& view);
+    RasterSurvey finish();
+
+  private:
+    void mark(const SampleView& view, int row, std::span<std::uint8_t> held) const;
+    void count_border(int column, int row, std::span<const std::uint8_t> held);
+    void count_blocks(int column, int row, std::span<const std::uint8_t> held);
+    void add_to_means(const SampleView& view, int row);
+
+    RasterHeader raster_;
+    int around_;
+    Poles poles_;
+    RasterSurvey out_;
+    std::vector<std::int64_t> counts_;            // by block: samples that hold a height
+    std::vector<std::uint8_t> held_, row_above_;  // of one row of a window; of the last row of each column so far
+    std::vector<std::uint8_t> left_, first_;      // by row of the band: column before the window, first column
+    struct Mean {
+        double sum = 0;
+        int count = 0;
+    } first_mean_, last_mean_;
 };
 
-/// Looks at every sample once. @param progress called after each row of groups with the fraction done, 0..1
-RasterSurvey survey(const RasterSamples& samples, const SurveyOrder& order = {},
-                    const std::function<void(double)>& progress = {});
-
-/// Samples a side of the squares of a survey and of the blocks in which a raster is read.
-inline constexpr int survey_step = 256;
+/// Of a raster in memory.
+RasterSurvey survey(const RasterSamples& whole);
 
 }  // namespace planet

@@ -11,13 +11,14 @@
 
 namespace planet {
 
-/// Regions are the cubes of a lattice in space, twice as wide as the reach. The blend of a region has every point of the
-/// border that reaches into it, so blends of neighbouring regions differ by no more than what BorderBlend's clusters
-/// do. Safe from several threads.
+/// Regions are the squares of a grid on each face of a cube around the planet, about as wide as the reach. The blend of a
+/// region has every point of the border that reaches into it, so blends of neighbouring regions differ by no more than
+/// what BorderBlend's clusters do. Safe from several threads.
 class RegionalBlend {
   public:
-    /// Makes the blend of all points of the border in a cap. Must be safe from several threads.
-    using Make = std::function<BorderBlend(const Cap&)>;
+    /// Makes the blend for a region within a cap, of the points of the border in a larger one around it. Must be safe from
+    /// several threads.
+    using Make = std::function<BorderBlend(const Cap& region, const Cap& around)>;
 
     RegionalBlend() = default;
     /// One blend of all points, made at once.
@@ -27,7 +28,7 @@ class RegionalBlend {
     RegionalBlend(Make make, double reach, std::size_t bytes);
 
     /// Whether a reach is small enough for more than a few regions, and large enough to number them.
-    static bool has_regions(double reach) { return reach > 1e-6 && reach < 0.05; }
+    static bool has_regions(double reach) { return reach > 4e-6 && reach < 0.05; }
 
     /// Adds to each correction, in metres, that at a unit normal.
     void add(std::span<const glm::dvec3> normals, std::span<double> corrections) const;

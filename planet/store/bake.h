@@ -31,7 +31,7 @@ struct BakeOptions {
 
     /// Of the bake itself: the plan, the tiles that can still change, buffers. Not of the field's own windows. Content
     /// does not depend on it.
-    std::size_t memory_bytes = std::size_t{256} << 20;
+    std::size_t memory_bytes = std::size_t{1} << 30;
     int threads = 0;  ///< 0: one for each processor. Content does not depend on it
 
     /// At most so many tiles are lost when a bake is stopped, but for those that were not final yet. Fewer are written

@@ -165,6 +165,7 @@ void BakeFile::rewrite() {
     std::error_code ignored;
     const std::filesystem::path copy = beside(path_);
     std::filesystem::remove(copy, ignored);
+    std::filesystem::remove(copy.string() + "-journal", ignored);  // of a bake that was killed here
     {
         SqliteStatement vacuum(file_, "VACUUM INTO ?");
         const std::string name = copy.string();

@@ -77,8 +77,8 @@ void Frontier::meet_around(FrontierTile& tile) {
             continue;
         }
         FrontierTile& other = *found->second;
-        tile.around.push_back(&other);
-        other.around.push_back(&tile);
+        tile.around[tile.around_count++] = &other;
+        other.around[other.around_count++] = &tile;
         tile.unsettled_around += !other.settled;
     }
 }
@@ -154,14 +154,17 @@ void Frontier::set_settled(FrontierTile& tile, bool settled) {
         if (counting.unsettled_around == 0) done.push_back(&counting);
     };
     count(tile);
-    for (FrontierTile* other : tile.around) count(*other);
+    for (std::size_t n = 0; n < tile.around_count; ++n) count(*tile.around[n]);
     for (FrontierTile* other : done) finish(*other);
 }
 
 void Frontier::finish(FrontierTile& tile) {
     assert(tile.settled && !tile.busy && !tile.told);
     forget(tile);
-    for (FrontierTile* other : tile.around) std::erase(other->around, &tile);
+    for (std::size_t n = 0; n < tile.around_count; ++n) {
+        FrontierTile& other = *tile.around[n];
+        *std::find(other.around.begin(), other.around.end(), &tile) = other.around[--other.around_count];
+    }
     for (const Side side : all_sides)
         if (FrontierTile* other = tile.beside[index(side)]) other->beside[index(seen_from_across(side))] = nullptr;
     plan_.mark_final(tile.root);

@@ -63,7 +63,8 @@ struct FrontierTile {
     int unmeasured_beside = 0;  ///< it pays to wait for them
     int unsettled_around = 0;   ///< itself included
     std::array<FrontierTile*, 3> beside{};
-    std::vector<FrontierTile*> around;
+    std::array<FrontierTile*, 16> around{};
+    std::size_t around_count = 0;
     std::list<FrontierTile*>::iterator kept;  ///< in Frontier's order of use, if its records can be dropped
     bool is_kept = false;
 

@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint16_t none = 0xffff;
 
 struct VertexLayout {
+    std::array<std::array<std::uint16_t, 2>, tile_vertices> cells{};  ///< by vertex index: those it splits
     /// By vertex index, the split vertices of the diamond's parents in the tile; 0 (a corner): there is none.
     std::array<std::array<std::uint16_t, 2>, tile_vertices> parents{};
     std::array<std::uint16_t, tile_vertices> side{};  ///< by vertex index: the side cell, or none
@@ -22,6 +23,10 @@ VertexLayout make_layout() {
     const TileLayout& t = tile_layout();
     VertexLayout l;
     l.side.fill(none);
+    for (unsigned i = tile_cells - 1; i > 0; --i) {
+        auto& cells = l.cells[t.split_vertex[i]];
+        cells = {static_cast<std::uint16_t>(i), cells[0] == 0 ? static_cast<std::uint16_t>(i) : cells[0]};
+    }
     for (unsigned i = 2; i < tile_cells; ++i) {
         const std::uint16_t parent = t.split_vertex[i >> 1];
         auto& p = l.parents[t.split_vertex[i]];
@@ -90,14 +95,13 @@ const std::array<std::uint16_t, 189>& side_cells_across() {
 
 void TileRecords::set_own(std::span<const float> own_deviations, std::span<const float> own_radii,
                           std::span<const std::uint8_t> exists) {
-    const TileLayout& t = tile_layout();
-    deviation.fill(0);
-    radius.fill(0);
-    for (std::size_t i = 1; i < exists.size(); ++i) {
-        if (!exists[i]) continue;
-        const std::size_t v = t.split_vertex[i];
-        deviation[v] = std::max(deviation[v], own_deviations[i]);
-        radius[v] = std::max(radius[v], own_radii[i]);
+    const VertexLayout& layout = vertex_layout();
+    const std::size_t end = tile_layout().vertex_count[static_cast<std::size_t>(depth)];
+    for (std::size_t v = 3; v < end; ++v) {
+        const auto [i, j] = layout.cells[v];
+        const bool is_there = exists[i] != 0;
+        deviation[v] = is_there ? std::max(own_deviations[i], own_deviations[j]) : 0.0f;
+        radius[v] = is_there ? std::max(own_radii[i], own_radii[j]) : 0.0f;
     }
 }
 

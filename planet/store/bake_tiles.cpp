@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "planet/error.h"
@@ -60,7 +61,7 @@ std::unique_ptr<InnerTile> TileMaker::open(LocationCode root, InnerTile* above) 
         find_lacks_below(root);
         set_own(*inner->records, true);
         own_height_range(tile, exists_);
-        measure_above(root, above);
+        measure_above();
     });
     std::vector<std::uint8_t> has_tile_below(tile_cells);
     for (const LocationCode below : scene_.plan.below(root)) {
@@ -89,7 +90,7 @@ std::unique_ptr<FrontierTile> TileMaker::measure(LocationCode root, InnerTile* a
     timed(BakeStep::deviation, [&] {
         lattice_.set_positions(scene_.scale.placement, tile_.height, tile_.undulation, exists_);
         set_own(*records, false);
-        measure_above(root, above);
+        measure_above();
     });
     timed(BakeStep::settling, [&] { records->settle(tile->theirs, tile->mine); });
     timed(BakeStep::certifying, [&] {
@@ -139,8 +140,8 @@ std::vector<std::uint8_t> TileMaker::encode(FrontierTile& tile) {
     } else {
         restore(tile);
         own_height_range(tile_, exists_);
-        baked_.tile = tile_;
-        baked_.exists = exists_;
+        std::swap(baked_.tile, tile_);
+        baked_.exists.assign(exists_.begin(), exists_.end());
         baked_.gain.resize(tile.mine.size());
         for (std::size_t k = 0; k < tile.mine.size(); ++k) {
             const SideSteps settled = tile.steps(k);
@@ -171,7 +172,8 @@ void TileMaker::restore(const FrontierTile& tile) {
     tile_.root = tile.root;
     tile_.depth = tile.depth;
     tile_.resampling = tile.resampling;
-    tile_.height = tile.height;
+    tile_.height.assign(tile.height.begin(), tile.height.end());
+    tile_.child_exists.reset();
     exists_.resize(std::size_t{1} << tile.depth);
     existence_.of_tile(tile.root, exists_);
     if (!scene_.scale.has_undulation) return;
@@ -181,14 +183,22 @@ void TileMaker::restore(const FrontierTile& tile) {
     interpolate_undulations(tile.root, tile.depth, tile_.undulation);
 }
 
+// The corners of a tile below the last of above_.
+Corners TileMaker::root_corners(LocationCode root) const {
+    if (above_.empty()) return face_corners(root.face());
+    const Corners& up = above_.back().corners;
+    return child_corners(up, split_vertex(up), root.child_index());
+}
+
 // Normals, heights and undulations. The root's corners are vertices of the tile above: taken from there.
-void TileMaker::sample(Tile& tile, const InnerTile* above) {
-    lattice_.set_normals(corners(tile.root), tile.depth);
+void TileMaker::sample(Tile& tile, InnerTile* above) {
+    find_cells_above(tile.root, above);
+    lattice_.set_normals(root_corners(tile.root), tile.depth);
     normals_.resize(lattice_.size());
     for (std::size_t v = 0; v < normals_.size(); ++v) normals_[v] = lattice_.normal(v);
     tile.height.resize(normals_.size());
     scene_.field.heights(normals_, tile.height);
-    for (std::size_t v = 0; v < tile.height.size(); ++v) tile.height[v] = quantized(tile.height[v], normals_[v]);
+    quantize(tile.height);
     if (above) {
         const auto& corner = tile_layout().corners[tile_cells | (tile.root.bits() & (tile_cells - 1))];
         for (std::size_t v = 0; v < 3; ++v) tile.height[v] = above->tile.height[corner[v]];
@@ -196,16 +206,27 @@ void TileMaker::sample(Tile& tile, const InnerTile* above) {
     if (scene_.scale.has_undulation) sample_undulations(tile, above);
 }
 
-float TileMaker::quantized(float height, const glm::dvec3& normal) const {
-    if (std::isnan(height)) return 0.0f;
-    const double quantum = scene_.scale.quantum_m;
-    const double quanta = std::nearbyint(static_cast<double>(height) / quantum);
-    if (std::abs(quanta) <= static_cast<double>(largest_height_quanta)) return static_cast<float>(quanta * quantum);
-    const Geodetic g = geodetic_from_normal(normal);
+// To whole quanta; NaN is 0.
+void TileMaker::quantize(std::span<float> heights) const {
+    const double quantum = scene_.scale.quantum_m, limit = static_cast<double>(largest_height_quanta);
+    bool fits = true;
+    for (float& height : heights) {
+        const double quanta = std::nearbyint(static_cast<double>(height) / quantum);
+        fits &= !(std::abs(quanta) > limit);
+        height = quanta == quanta ? static_cast<float>(quanta * quantum) : 0.0f;
+    }
+    if (!fits) refuse_heights(heights);
+}
+
+void TileMaker::refuse_heights(std::span<const float> heights) const {
+    const double limit = static_cast<double>(largest_height_quanta) * scene_.scale.quantum_m;
+    const auto too_high = [&](float h) { return std::abs(static_cast<double>(h)) > limit; };
+    const auto v = std::find_if(heights.begin(), heights.end(), too_high);
+    const Geodetic g = geodetic_from_normal(normals_[static_cast<std::size_t>(v - heights.begin())]);
     throw Error(Fault::bad_data, "bake",
                 "the height at " + std::to_string(g.latitude / degrees) + "," + std::to_string(g.longitude / degrees) +
-                    " is " + std::to_string(height) + " m",
-                "at most " + std::to_string(static_cast<double>(largest_height_quanta) * quantum) + " m up or down");
+                    " is " + std::to_string(*v) + " m",
+                "at most " + std::to_string(limit) + " m up or down");
 }
 
 void TileMaker::sample_undulations(Tile& tile, const InnerTile* above) {
@@ -241,8 +262,12 @@ void TileMaker::find_lacks_below(LocationCode root) {
 void TileMaker::set_own(TileRecords& records, bool inner) {
     deviation_.resize(exists_.size());
     radius_.resize(exists_.size());
-    own_deviation(lattice_, deviation_);
-    corner_radii(lattice_, exists_, inner, lacks_below_, radius_);
+    if (inner) {
+        own_deviation(lattice_, deviation_);
+        corner_radii(lattice_, exists_, true, lacks_below_, radius_);
+    } else {
+        measure_leaf(lattice_, exists_, deviation_, radius_);
+    }
     records.depth = lattice_.depth();
     records.inner = inner;
     std::copy(lattice_.rounded().begin(), lattice_.rounded().end(), records.position.begin());
@@ -250,12 +275,14 @@ void TileMaker::set_own(TileRecords& records, bool inner) {
 }
 
 // This tile's vertices against every cell that holds its root.
-void TileMaker::measure_above(LocationCode root, InnerTile* above) {
-    find_cells_above(root, above);
+void TileMaker::measure_above() {
+    const TileHull hull(lattice_);
     for (const CellAbove& cell : above_) {
         if (!cell.exists) continue;
-        raise_to(cell.holder->records->deviation[cell.vertex],
-                 certified_deviation(deviation_from(lattice_, cell.plane)));
+        float& deviation = cell.holder->records->deviation[cell.vertex];
+        const float known = std::atomic_ref(deviation).load(std::memory_order_relaxed);
+        if (!hull.may_exceed(cell.plane, known)) continue;
+        raise_to(deviation, certified_deviation(deviation_from(lattice_, cell.plane)));
         cell.holder->changed = true;
     }
 }

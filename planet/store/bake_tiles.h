@@ -3,7 +3,6 @@
 // radii start, what resampling lost, bytes.
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -31,7 +30,7 @@ void raise_to(float& value, float least);
 /// from several threads.
 void report_above(const FrontierTile& tile, float min_height, float max_height);
 
-/// Processor time by step, seconds.
+/// Time by step, seconds.
 enum class BakeStep { resampling, deviation, settling, certifying, compression };
 inline constexpr std::size_t bake_steps = 5;
 using BakeSeconds = std::array<double, bake_steps>;
@@ -63,12 +62,14 @@ class TileMaker {
     template <class Work>
     void timed(BakeStep step, Work work);
 
-    void sample(Tile& tile, const InnerTile* above);
-    float quantized(float height, const glm::dvec3& normal) const;
+    Corners root_corners(LocationCode root) const;
+    void sample(Tile& tile, InnerTile* above);
+    void quantize(std::span<float> heights) const;
+    [[noreturn]] void refuse_heights(std::span<const float> heights) const;
     void sample_undulations(Tile& tile, const InnerTile* above);
     void find_lacks_below(LocationCode root);
     void set_own(TileRecords& records, bool inner);
-    void measure_above(LocationCode root, InnerTile* above);
+    void measure_above();
     void find_cells_above(LocationCode root, InnerTile* above);
     void restore(const FrontierTile& tile);
     std::unique_ptr<FrontierTile> frontier_tile(LocationCode root, int depth, InnerTile* above,

@@ -42,9 +42,4 @@ struct Saturation {
     void join(unsigned i, unsigned beyond) const;
 };
 
-/// Where radii of a tile start: corner_distance(), rounded up, of the existing cells that lack a child diamond.
-/// @param lacks_below by position at the level below the last: whether the child diamonds in other tiles are incomplete
-void corner_radii(const TileLattice& lattice, std::span<const std::uint8_t> exists, bool inner,
-                  std::span<const std::uint8_t> lacks_below, std::span<float> radius);
-
 }  // namespace planet

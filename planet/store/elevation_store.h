@@ -17,7 +17,7 @@ namespace planet {
 
 class SqliteFile;
 
-inline constexpr int store_format_version = 1;
+inline constexpr int store_format_version = 2;
 
 /// The options of a bake that determine what is in its store. See BakeOptions.
 struct BakeSettings {

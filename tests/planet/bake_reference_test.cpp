@@ -1,8 +1,11 @@
 // The streaming bake against the pedestrian one, and against itself: other threads, less memory, interruptions.
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <fstream>
 #include <random>
 #include <set>
@@ -185,6 +188,63 @@ TEST_F(BakedFile, GoesOnWhereItWasStopped) {
         std::filesystem::remove(path("a.octa"));
     }
     EXPECT_GT(stops, 12);
+}
+
+// A process that bakes, telling through a pipe how far it is.
+pid_t start_baking(const ElevationField& field, BakeOptions o, const std::filesystem::path& path, int pipe_end) {
+    const pid_t child = fork();
+    if (child != 0) return child;
+    o.progress = [&](std::string_view, double) { static_cast<void>(!write(pipe_end, "x", 1)); };
+    try {
+        bake(field, o, path);
+    } catch (...) {
+        _exit(1);
+    }
+    _exit(0);
+}
+
+// Kills it after some calls of progress and a moment more. @returns whether it was still baking
+bool killed(pid_t child, int pipe_end, std::uint64_t calls, std::uint64_t microseconds) {
+    char byte;
+    for (std::uint64_t c = 0; c < calls; ++c)
+        if (read(pipe_end, &byte, 1) != 1) break;
+    const auto until = std::chrono::steady_clock::now() + std::chrono::microseconds(microseconds);
+    while (std::chrono::steady_clock::now() < until) std::this_thread::yield();
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
+    return WIFSIGNALED(status);
+}
+
+TEST_F(BakedFile, SurvivesBeingKilledAtAnyMoment) {
+    BakeOptions o = options_with_geoid();
+    bake(corner_field(), o, path("whole.octa"));
+    const std::vector<char> whole = bytes(path("whole.octa"));
+    o.resume = true;
+    o.threads = 2;
+    o.transaction_tiles = 8;
+    std::mt19937 random(9);
+    int kills = 0, unfinished = 0, finished = 0;
+    while (kills < 60 || finished == 0) {
+        int ends[2];
+        ASSERT_EQ(pipe(ends), 0);
+        const pid_t child = start_baking(corner_field(), o, path("a.octa"), ends[1]);
+        close(ends[1]);
+        const bool was_killed = killed(child, ends[0], random() % 60, random() % 4000);
+        close(ends[0]);
+        kills += was_killed;
+        if (!std::filesystem::exists(path("a.octa")) || std::filesystem::file_size(path("a.octa")) == 0) continue;
+        const ElevationStore store = ElevationStore::open(path("a.octa"));
+        const StoreCheck check = store.verify();
+        ASSERT_TRUE(check.ok()) << check.first_problems.front();
+        unfinished += !store.metadata().complete && check.tiles > 0;
+        if (!store.metadata().complete) continue;
+        ++finished;
+        ASSERT_EQ(bytes(path("a.octa")), whole);
+        std::filesystem::remove(path("a.octa"));
+    }
+    EXPECT_GT(unfinished, 10);
 }
 
 std::string refusal(const ElevationField& field, const BakeOptions& o, const std::filesystem::path& path) {

@@ -201,7 +201,7 @@ TEST(BlockedRaster, AFileThatChangesOrVanishesOrIsCutIsOneLine) {
         blocked_field(folder / "cut.tif", std::size_t{1} << 20);
         FAIL() << "a file that is cut short was read";
     } catch (const Error& e) {
-        EXPECT_NE(std::string(e.what()).find("rows 511 to"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("in row 598, columns 0 to 899"), std::string::npos) << e.what();
     }
 }
 

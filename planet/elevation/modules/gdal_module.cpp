@@ -139,11 +139,6 @@ int reduction_for(int width, int height, const RasterOptions& options, const std
     return n;
 }
 
-std::string text_of(const SampleWindow& w) {
-    return "columns " + std::to_string(w.column) + " to " + std::to_string(w.column + w.columns - 1) + ", rows " +
-           std::to_string(w.row) + " to " + std::to_string(w.row + w.rows - 1);
-}
-
 // Windows of the height band as marked samples.
 class GdalReader : public RasterReader {
   public:
@@ -271,13 +266,21 @@ class GdalReader : public RasterReader {
 
     void fetch(GDALRasterBand& band, const SampleWindow& w, void* out, GDALDataType type,
                const GdalMessages& messages) const {
+        if (can_read(band, w, out, type)) return;
+        SampleWindow bad = w;
+        bad.rows = 1;
+        while (bad.row < w.row + w.rows - 1 && can_read(band, bad, out, type)) ++bad.row;
+        throw Error(Fault::bad_data, path_,
+                    "is damaged or cut short in row " + std::to_string(bad.row) + ", columns " +
+                        std::to_string(w.column) + " to " + std::to_string(w.column + w.columns - 1) +
+                        (messages.last().empty() ? "" : ": ") + messages.last(),
+                    one_band);
+    }
+
+    bool can_read(GDALRasterBand& band, const SampleWindow& w, void* out, GDALDataType type) const {
         const int n = reduction_;
-        if (band.RasterIO(GF_Read, w.column * n, w.row * n, w.columns * n, w.rows * n, out, w.columns, w.rows, type, 0,
-                          0, nullptr) != CE_None)
-            throw Error(
-                Fault::bad_data, path_,
-                "is damaged or cut short in " + text_of(w) + (messages.last().empty() ? "" : ": ") + messages.last(),
-                one_band);
+        return band.RasterIO(GF_Read, w.column * n, w.row * n, w.columns * n, w.rows * n, out, w.columns, w.rows, type,
+                             0, 0, nullptr) == CE_None;
     }
 
     template <class Integer>
