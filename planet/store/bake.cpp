@@ -142,9 +142,8 @@ BakeReport bake(const ElevationField& field, const BakeOptions& options, const s
                     "another name, --replace, or --resume for a store that is not finished");
     }
     work.plan();
-    const auto file = options.resume && !options.replace
-                          ? BakeFile::resume(path, work.metadata())
-                          : std::make_unique<BakeFile>(SqliteFile(path, SqliteFile::Access::create), work.metadata());
+    const auto file = options.resume && !options.replace ? BakeFile::resume(path, work.metadata())
+                                                         : BakeFile::begin(path, work.metadata());
     work.run(*file);
     return work.report();
 }

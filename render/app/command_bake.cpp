@@ -126,6 +126,10 @@ void fill(Report& report, const BakeCommand& command, const planet::BakeReport& 
     report.set("ellipsoid", planet::to_string(command.bake.ellipsoid));
     report.set("vertical_datum", planet::name_of(field.datum()));
     report.set("sources", sources_json(field.sources()));
+    auto assumed = nlohmann::ordered_json::array();
+    for (const planet::SourceInfo& source : field.sources())
+        if (source.datum_assumed) assumed.push_back(source.name);
+    report.set("vertical_datum_assumed", assumed);
     for (const auto& [step, taken] : baked.seconds) report.add_seconds(step, taken);
 }
 
@@ -149,7 +153,8 @@ void print(const BakeCommand& command, const planet::BakeReport& baked, const pl
         {"bound", "no source sample is farther than " + four_digits(baked.resampling_max_m) + " m from the surface"});
     for (const planet::SourceInfo& source : field.sources())
         rows.push_back({"source", source.name + ", " + crs_text(source.crs) + ", above " +
-                                      std::string(planet::name_of(source.datum)) + ", " +
+                                      std::string(planet::name_of(source.datum)) +
+                                      (source.datum_assumed ? " (assumed: it does not say), " : ", ") +
                                       (source.spacing_m > 0 ? four_digits(source.spacing_m) + " m" : "any spacing")});
     print_table(std::cout, rows);
 }
