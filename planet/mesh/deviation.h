@@ -60,9 +60,10 @@ class TileLattice {
 
 /// The plane of a cell: a corner and the (unnormalized) normal.
 struct CellPlane {
+    CellPlane() = default;
     CellPlane(const glm::dvec3& left, const glm::dvec3& right, const glm::dvec3& apex)
         : corner(left), normal(glm::cross(right - left, apex - left)) {}
-    glm::dvec3 corner, normal;
+    glm::dvec3 corner{0}, normal{0};
 
     /// t of a point with geodetic normal n, metres, positive where the plane passes above.
     double above(const glm::dvec3& point, const glm::dvec3& n) const {
@@ -87,8 +88,41 @@ void own_deviation(const TileLattice& lattice, std::span<float> deviation);
 /// The largest |t| of any vertex of the tile but its root's corners (those belong to the parent's lattice).
 double deviation_from(const TileLattice& lattice, const CellPlane& plane);
 
+/// What bounds the |t| of every vertex of a tile from any plane without looking at the vertices: the triangle of its
+/// root's corners, how far vertices lie from its plane, and how far they lie outside when seen along its normal.
+class TileHull {
+  public:
+    /// The root's corners must exist.
+    explicit TileHull(const TileLattice& lattice);
+
+    /// At least deviation_from(lattice, plane); infinity for planes that are steep here.
+    double deviation_bound(const CellPlane& plane) const;
+
+    /// False only if deviation_from(lattice, plane), certified, is at most `known`: then there is no need to test.
+    bool may_exceed(const CellPlane& plane, float known) const {
+        return !(certified_deviation(deviation_bound(plane)) <= known);
+    }
+
+  private:
+    glm::dvec3 corner_[3], normal_[3];  // of the root
+    glm::dvec3 up_;                     // unit normal of the corners' plane
+    double off_plane_ = 0;              // largest distance of a vertex from that plane, metres
+    double outside_ = 0;                // the least barycentric coordinate of a vertex is -outside_
+};
+
 /// Largest distance from the rounded split vertex of cell i to the true corners of the cell, metres.
 double corner_distance(const TileLattice& lattice, unsigned i);
+
+/// Where radii of a tile start: corner_distance(), rounded up, of the existing cells that lack a child diamond; else 0.
+/// @param exists, radius by local index @param inner whether the tile has tiles below it
+/// @param lacks_below by position at the level below the last: whether the child diamonds in other tiles are incomplete
+void corner_radii(const TileLattice& lattice, std::span<const std::uint8_t> exists, bool inner,
+                  std::span<const std::uint8_t> lacks_below, std::span<float> radius);
+
+/// own_deviation() and corner_radii() of a tile without tiles below it, faster than one after the other.
+/// @param exists, deviation, radius by local index
+void measure_leaf(const TileLattice& lattice, std::span<const std::uint8_t> exists, std::span<float> deviation,
+                  std::span<float> radius);
 
 /// The radius of a diamond given a child diamond, m and m_c their rounded split vertices. The slack keeps the split
 /// test nested when it is evaluated in double: eyes within 50,000 km round by less than 2^-20 of any radius.

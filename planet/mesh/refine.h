@@ -26,7 +26,7 @@ class Walk {
     }
 
   private:
-    // Both children are tested before either is walked: their records lie side by side, and the tests overlap.
+    // Both children are tested before either is walked: the tests overlap.
     void children(const PlacedTile& t, unsigned i, unsigned state) {
         const unsigned first = 2 * i, second = first + 1;
         const auto [first_state, second_state] = strip_child_states[state];
@@ -35,8 +35,7 @@ class Walk {
             below(t, second, second_state);
             return;
         }
-        const SplitRecord* split = &t.split[first];
-        const bool first_split = test_(split[0]), second_split = test_(split[1]);
+        const bool first_split = test_(t.split[first]), second_split = test_(t.split[second]);
         if (first_split)
             children(t, first, first_state);
         else

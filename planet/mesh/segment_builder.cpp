@@ -78,7 +78,7 @@ MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t v
             grid_coordinate(a, axis) + grid_coordinate(b, axis) - 2 * grid_coordinate(place, axis);
         return static_cast<float>(static_cast<double>(twice) * (0.5 * grid_unit_m));
     };
-    const SplitRecord& s = t->split[split_cells()[vertex]];
+    const SplitRecord s = t->split[split_cells()[vertex]];
     return {offset(0), offset(1), offset(2), s.deviation, s.radius};
 }
 
@@ -133,9 +133,8 @@ int SegmentBuilder::find_in_children(const PlacedTile& t, unsigned i, int level)
         a = find_below(t, first, level);
         b = find_below(t, second, level);
     } else {
-        const SplitRecord* split = &t.split[first];      // both are tested before either is walked: the tests overlap
-        if (!(2 * first >> t.depth)) __builtin_prefetch(&t.split[2 * first]);
-        const bool first_split = test_(split[0]), second_split = test_(split[1]);
+        // Both are tested before either is walked: the tests overlap.
+        const bool first_split = test_(t.split[first]), second_split = test_(t.split[second]);
         a = first_split ? find_in_children(t, first, level) : push(t, first, level);
         b = second_split ? find_in_children(t, second, level) : push(t, second, level);
     }
@@ -181,7 +180,7 @@ void SegmentBuilder::make(BuiltSegment& segment) {
     leaf_before_.tile = nullptr;
     damaged_ = false;
     ratio_max_ = deviation_max_ = 0;
-    worth_ = std::numeric_limits<double>::infinity();
+    worth_ = least_reach_ = std::numeric_limits<double>::infinity();
     write_strip(segment);
 
     const PlacedTile& t = *segment.root.tile;
@@ -193,6 +192,7 @@ void SegmentBuilder::make(BuiltSegment& segment) {
     segment.damaged = damaged_;
     segment.slack = slack_.metres();
     segment.ratio_max = ratio_max_;
+    segment.least_reach = least_reach_;
     segment.deviation_max = deviation_max_;
 }
 
@@ -237,13 +237,17 @@ std::uint32_t SegmentBuilder::add(const PlacedTile& t, std::uint16_t vertex) {
     return static_cast<std::uint32_t>(vertices_.size() - 1 - first_vertex_);
 }
 
-// An unsplit diamond: its slack, and its deviation over what the test allows at the nearest point below it.
-inline void SegmentBuilder::certify(const SplitRecord& s) {
-    if (!(s.deviation > 0)) return;
-    const double deviation = static_cast<double>(s.deviation), scaled = test_.K * deviation;
+// A diamond that is not split: its slack, if it could be, and its deviation over what the test allows at the nearest point
+// below it.
+inline void SegmentBuilder::certify(const SplitRecord& s, bool can_split) {
+    if (s.deviation == 0) return;
+    const double deviation = std::abs(static_cast<double>(s.deviation)), scaled = test_.K * deviation;
     deviation_max_ = std::max(deviation_max_, deviation);
     const double d2 = test_.distance2(s), r = static_cast<double>(s.radius);
-    slack_.add(d2, r + scaled);
+    if (can_split)
+        slack_.add(d2, r + scaled);
+    else
+        least_reach_ = std::min(least_reach_, std::max(std::sqrt(d2) - r, 0.0));
     // scaled / (d - r) > ratio_max without a root or a division: most leaves are not the worst.
     if (const double within = scaled * worth_ + r; d2 < within * within) [[unlikely]] {
         ratio_max_ = std::max(ratio_max_, scaled / std::max(std::sqrt(d2) - r, 0.0));
@@ -260,12 +264,18 @@ void SegmentBuilder::certify(const Leaf& leaf, bool whole_segment) {
     leaf_before_ = leaf;
     if (!whole_segment && !sibling_was_leaf) slack_.add(test_, t.split[i >> 1]);
     if (!(i >> t.depth)) {
-        certify(t.split[i]);
+        const SplitRecord s = t.split[i];
+        certify(s, s.deviation > 0);
     } else if (t.depth == tile_levels && !t.child_bound.empty()) {
         const SplitRecord& bound = t.child_bound[i - tile_cells];
         const PlacedTile* below = t.child(*tiles_, i - tile_cells, test_);
-        if (below) slack_.add(test_, bound);
-        certify(below ? below->split[1] : bound);
+        if (test_(bound)) {
+            slack_.add(test_, bound);
+            const SplitRecord s = below ? below->split[1] : bound;
+            certify(s, below && s.deviation > 0);
+        } else {
+            certify(bound, true);
+        }
         damaged_ = damaged_ || (below && below->damaged);
     }
 }

@@ -46,7 +46,9 @@ struct BuiltSegment {
     std::uint32_t first_vertex = 0, first_index = 0, first_leaf = 0;  ///< in the arrays of the builder
     bool detailed = false, damaged = false;
     double slack = 0;  ///< metres: while the eye moves by less, the same cells are the segment's leaves
-    double ratio_max = 0, deviation_max = 0;
+    double ratio_max = 0, deviation_max = 0;  ///< see Segments
+    /// Metres: what is not split for want of a tile is at least that far. Infinite if nothing is.
+    double least_reach = 0;
 };
 
 /// Finds and builds segments, into storage of its own that it keeps from one use to the next.
@@ -92,7 +94,7 @@ class SegmentBuilder {
     void enter(const PlacedTile& t);
     std::uint32_t add(const PlacedTile& t, std::uint16_t vertex);
     void certify(const Leaf& leaf, bool whole_segment);
-    void certify(const SplitRecord& s);
+    void certify(const SplitRecord& s, bool can_split);
 
     const TileSource* tiles_ = nullptr;
     SplitTest test_;
@@ -112,7 +114,8 @@ class SegmentBuilder {
     Slack slack_{glm::dvec3(0)};
     Leaf leaf_before_{};
     bool damaged_ = false;
-    double ratio_max_ = 0, deviation_max_ = 0, worth_ = 0;  // worth: 1 / ratio_max
+    double ratio_max_ = 0, deviation_max_ = 0, least_reach_ = 0;
+    double worth_ = 0;  // 1 / ratio_max_
 };
 
 }  // namespace planet

@@ -9,9 +9,9 @@ namespace planet {
 
 Sphere bounding_sphere(const PlacedTile& t, unsigned local) {
     if (local >> t.depth) local >>= 1;
-    const SplitRecord& s = t.split[local];
+    const SplitRecord s = t.split[local];
     const glm::dvec3 centre(s.x, s.y, s.z);
-    if (s.deviation > 0) return {centre, static_cast<double>(s.radius)};
+    if (s.deviation != 0) return {centre, static_cast<double>(s.radius)};
     double radius = 0;
     for (const std::uint16_t corner : tile_layout().corners[local])
         radius = std::max(radius, glm::distance(centre, ecef_from_grid(t.position[corner])));
@@ -100,7 +100,7 @@ class SegmentTree::Visit {
         n.radius = sphere.radius;
         n.divided = false;
         if (!(local >> t.depth)) {
-            const SplitRecord& s = t.split[local];
+            const SplitRecord s = t.split[local];
             const double patch_reach = patch_reach_[static_cast<std::size_t>(n.cell.bisection_level())];
             const double distance2 = view_.test.distance2(s);
             n.divided = view_.test(s) && distance2 < patch_reach * patch_reach;

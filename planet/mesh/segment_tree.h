@@ -24,7 +24,8 @@ struct Sphere {
 };
 
 /// About the split vertex of local cell i of a tile, or that of its parent, if the cell is a leaf where the tile ends. A
-/// diamond that does not exist has no radius: its cells are flat, and their corners are the farthest.
+/// diamond that does not exist has no radius: its cells are flat, and their corners are the farthest. One that only lacks
+/// tiles in memory has: what is in view must not depend on these.
 Sphere bounding_sphere(const PlacedTile& t, unsigned i);
 
 struct SegmentView {

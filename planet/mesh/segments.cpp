@@ -70,7 +70,6 @@ void Segments::update(const TileSource& tiles, const SegmentView& view, int thre
     built_ = 0;
     if (tiles_from_ != &tiles || !view.same_but_for_eye_and_culling(view_)) clear();
     const bool at_rest = listed_ && view.test.eye == view_.test.eye && view.culling == view_.culling;
-    if (view.test.eye != view_.test.eye) ++eye_;
     tiles_from_ = &tiles;
     view_ = view;
     if (at_rest) return;
@@ -242,10 +241,20 @@ Segments::Piece Segments::new_piece(const BuiltSegment& b) {
             .sphere = b.sphere,
             .expires = tree_.expiry(b.slack),
             .ratio_max = b.ratio_max,
+            .least_reach = b.least_reach,
             .deviation_max = b.deviation_max,
+            .odometer = tree_.odometer(),
             .root = b.root,
-            .eye = eye_,
             .damaged = b.damaged};
+}
+
+// While the slack holds, what could be split needs not: its ratio is at most 1. What lacks a tile has come nearer by what
+// the eye went at most, and the nearest by the largest factor.
+double Segments::ratio_of(const Piece& p) const {
+    const double gone = tree_.odometer() - p.odometer;
+    if (gone == 0 || p.ratio_max == 0) return p.ratio_max;
+    if (p.least_reach == infinity) return 1;
+    return gone < p.least_reach ? std::max(1.0, p.ratio_max * (p.least_reach / (p.least_reach - gone))) : infinity;
 }
 
 void Segments::list() {
@@ -262,9 +271,7 @@ void Segments::list() {
             sums_.vertices += p.segment.vertex_count;
             sums_.indices += p.segment.index_count;
             sums_.damaged = sums_.damaged || p.damaged;
-            const double ratio = p.ratio_max;
-            const bool exact = ratio == 0 || p.eye == eye_;
-            sums_.ratio_max = std::max(sums_.ratio_max, exact ? ratio : ratio <= 1 ? 1 : infinity);
+            sums_.ratio_max = std::max(sums_.ratio_max, ratio_of(p));
             sums_.deviation_max = std::max(sums_.deviation_max, p.deviation_max);
         }
     kept_ = total_leaves_ - sums_.block_leaves;

@@ -70,7 +70,8 @@ class Segments {
     /// Whether a damaged tile is among those looked at.
     bool damaged() const { return sums_.damaged; }
     /// The certificate: the largest projected deviation of the picture is at most max_pixel_deviation times this. Exact
-    /// after build(); of segments built for another eye update() only knows that it is at most 1.
+    /// after build(); of segments built for another eye update() only knows that it is at most 1, and of what lacks a
+    /// tile, by how much it can have grown.
     double ratio_max() const { return sums_.ratio_max; }
     /// The largest deviation of a leaf from the finest surface, metres, exaggerated.
     double deviation_max_m() const { return sums_.deviation_max; }
@@ -84,9 +85,9 @@ class Segments {
         Segment segment;
         Sphere sphere;
         double expires;  ///< see SegmentTree
-        double ratio_max, deviation_max;
+        double ratio_max, least_reach, deviation_max;
+        double odometer;  ///< when it was built
         PlacedCell root;
-        std::uint32_t eye;  ///< number of the eye for which it was built
         bool damaged;
     };
     /// The segments of a patch's half, in Sierpinski order.
@@ -108,6 +109,7 @@ class Segments {
     void build(const TileSource& tiles, Job& job, SegmentBuilder& builder) const;
     void place(std::span<Job> jobs, std::size_t threads);
     void place(Job& job);
+    double ratio_of(const Piece& piece) const;
     Piece new_piece(const BuiltSegment& b);
     void list();
     void release_dropped();
@@ -130,7 +132,6 @@ class Segments {
 
     std::vector<Segment> segments_;
     std::vector<Range> changed_vertices_, changed_indices_;
-    std::uint32_t eye_ = 0;  // counts its places
     std::size_t built_ = 0, total_leaves_ = 0, kept_ = 0;
     Sums sums_;
 };

@@ -31,6 +31,13 @@ class ByteWriter {
         u8(static_cast<std::uint8_t>(v));
     }
     void raw(std::span<const std::uint8_t> b) { bytes_.insert(bytes_.end(), b.begin(), b.end()); }
+    /// Room for `size` more bytes, zeros until they are written; shrink_to() gives back what was not needed of it.
+    std::uint8_t* extend(std::size_t size) {
+        bytes_.resize(bytes_.size() + size);
+        return bytes_.data() + bytes_.size() - size;
+    }
+    /// @param end in or at the end of what extend() gave last
+    void shrink_to(const std::uint8_t* end) { bytes_.resize(static_cast<std::size_t>(end - bytes_.data())); }
     void clear() { bytes_.clear(); }
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }
 

@@ -28,10 +28,29 @@ const std::array<float, deviation_codes>& deviation_steps() {
     return table;
 }
 
-unsigned deviation_code(float deviation) {
+namespace {
+
+// By the sign, exponent and four bits of mantissa of a float, the code of the least float that has these.
+constexpr int kept_bits = 13, dropped_bits = 32 - kept_bits;
+
+std::array<std::uint16_t, 1 << (kept_bits - 1)> make_first_codes() {
+    std::array<std::uint16_t, 1 << (kept_bits - 1)> first{};
     const auto& steps = deviation_steps();
-    const auto found = std::lower_bound(steps.begin(), steps.end() - 1, deviation);
-    return static_cast<unsigned>(found - steps.begin());
+    for (std::uint32_t k = 0; k < first.size(); ++k) {
+        const float least = std::bit_cast<float>(k << dropped_bits);
+        first[k] = static_cast<std::uint16_t>(std::lower_bound(steps.begin(), steps.end() - 1, least) - steps.begin());
+    }
+    return first;
+}
+
+}  // namespace
+
+unsigned deviation_code(float deviation) {
+    static const auto first = make_first_codes();
+    const auto& steps = deviation_steps();
+    unsigned code = first[std::bit_cast<std::uint32_t>(deviation) >> dropped_bits];
+    while (code < deviation_codes - 1 && steps[code] < deviation) ++code;  // at most twice
+    return code;
 }
 
 }  // namespace planet

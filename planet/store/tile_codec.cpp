@@ -3,13 +3,16 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <memory>
 
+#include "planet/mesh/saturation.h"
 #include "planet/store/byte_stream.h"
 #include "planet/store/ladder.h"
+#include "planet/store/lattice_code.h"
 #include "planet/store/rice_code.h"
 
 namespace planet {
@@ -20,61 +23,25 @@ constexpr std::size_t most_payload_bytes = 1 << 16;
 constexpr int compression_level = 3;  // little is left to gain after the Rice code
 constexpr std::uint8_t flag_inner = 1, flag_undulation = 2, flag_whole = 4;
 
-// ---- heights and undulations: the three corners, then what each vertex differs from the mean of its ends ------------
-
-std::int64_t mean_of_ends(const TileLayout& layout, std::span<const std::int64_t> q, std::size_t v) {
-    const auto [a, b] = layout.ends[v];
-    return (q[a] + q[b]) >> 1;
-}
-
-std::int64_t in_quanta(double value, double quantum) {
-    return std::llround(value / quantum);
-}
-
-// The vertices from `3` to `count` in groups by the level of the cells they split.
-template <class Group>
-void by_level(std::span<std::uint64_t> residual, Group group) {
-    std::size_t begin = 3;
-    for (const std::size_t end : tile_layout().vertex_count) {
-        if (end <= begin || end > residual.size() + 3) continue;
-        group(residual.subspan(begin - 3, end - begin));
-        begin = end;
-    }
-}
-
-void write_lattice(ByteWriter& out, std::span<const std::int64_t> q) {
-    for (std::size_t v = 0; v < 3; ++v) out.varint(zigzag(q[v]));
-    std::vector<std::uint64_t> residual;
-    for (std::size_t v = 3; v < q.size(); ++v) residual.push_back(zigzag(q[v] - mean_of_ends(tile_layout(), q, v)));
-    RiceWriter rice(out);
-    by_level(residual, [&](std::span<const std::uint64_t> level) { rice.group(level); });
-}
-
-// Reads `count` values. Wide arithmetic and a range check: damage must not overflow.
-std::span<const std::int64_t> read_lattice(ByteReader& in, std::size_t count) {
-    static thread_local std::vector<std::uint64_t> residual;
-    static thread_local std::vector<std::int64_t> q;
-    q.resize(count);
-    residual.resize(count - 3);
-    for (std::size_t v = 0; v < 3; ++v) q[v] = unzigzag(in.varint());
-    {
-        RiceReader rice(in);
-        by_level(residual, [&](std::span<std::uint64_t> level) { rice.group(level); });
-    }
-    const auto in_range = [](std::int64_t v) { return v >= -largest_height_quanta && v <= largest_height_quanta; };
-    const TileLayout& layout = tile_layout();
-    bool fits = in_range(q[0]) && in_range(q[1]) && in_range(q[2]);
-    for (std::size_t v = 3; v < count && fits; ++v) {
-        q[v] = mean_of_ends(layout, q, v) + unzigzag(residual[v - 3]);
-        fits = in_range(q[v]);
-    }
-    if (!fits) throw MalformedBytes("a height is out of range");
-    return q;
-}
+// ---- heights and undulations ----------------------------------------------------------------------------------------
 
 float finite(float v, float largest = std::numeric_limits<float>::max()) {
     if (!(std::abs(v) <= largest)) throw MalformedBytes("a number is out of range");
     return v;
+}
+
+// Heights are whole multiples of the quantum, a power of two, below 2^24 of them: exact in float both ways.
+void write_heights(ByteWriter& out, std::span<const float> height, double quantum) {
+    std::array<std::int32_t, tile_vertices> q;
+    const auto quanta = static_cast<float>(1 / quantum);
+    for (std::size_t v = 0; v < height.size(); ++v) q[v] = static_cast<std::int32_t>(height[v] * quanta);
+    write_lattice(out, std::span(q).first(height.size()));
+}
+
+void read_heights(ByteReader& in, std::span<float> height, double quantum) {
+    std::array<std::int32_t, tile_vertices> q;
+    read_lattice(in, std::span(q).first(height.size()));
+    for (std::size_t v = 0; v < height.size(); ++v) height[v] = static_cast<float>(q[v]) * static_cast<float>(quantum);
 }
 
 void write_undulations(ByteWriter& out, const Tile& tile) {
@@ -83,8 +50,9 @@ void write_undulations(ByteWriter& out, const Tile& tile) {
         for (std::size_t v = 0; v < 3; ++v) out.f32(static_cast<float>(tile.undulation[v].m));
         return;
     }
-    std::vector<std::int64_t> q;
-    for (std::size_t v = 0; v < own; ++v) q.push_back(in_quanta(tile.undulation[v].m, undulation_quantum_m));
+    std::vector<std::int32_t> q;
+    for (std::size_t v = 0; v < own; ++v)
+        q.push_back(static_cast<std::int32_t>(std::lround(tile.undulation[v].m / undulation_quantum_m)));
     write_lattice(out, q);
 }
 
@@ -94,7 +62,8 @@ void read_undulations(ByteReader& in, Tile& tile) {
     if (own == 0) {
         for (std::size_t v = 0; v < 3; ++v) tile.undulation[v].m = static_cast<double>(finite(in.f32(), 1e4f));
     } else {
-        const auto q = read_lattice(in, own);
+        std::vector<std::int32_t> q(own);
+        read_lattice(in, q);
         for (std::size_t v = 0; v < own; ++v) tile.undulation[v].m = static_cast<double>(q[v]) * undulation_quantum_m;
     }
     interpolate_undulations(tile.root, tile.depth, tile.undulation);
@@ -120,7 +89,7 @@ std::vector<std::uint8_t> read_bits(ByteReader& in, std::size_t count) {
 void write_leaf(ByteWriter& out, const BakedTile& baked, bool whole) {
     const auto sides = side_cells(baked.tile.depth);
     std::vector<std::uint8_t> exists;
-    std::vector<std::uint64_t> deviation, radius;
+    std::vector<std::uint32_t> deviation, radius;
     for (std::size_t k = 0; k < sides.size(); ++k) {
         exists.push_back(baked.exists[sides[k].cell]);
         if (!exists.back()) continue;
@@ -134,30 +103,27 @@ void write_leaf(ByteWriter& out, const BakedTile& baked, bool whole) {
 }
 
 struct SideGains {
-    std::vector<std::uint64_t> deviation, radius;
+    std::vector<std::uint32_t> deviation, radius;
 };
 
 // What the bake did, from the gains of the sides: own deviations, then saturation from the finest level up.
 void settle_leaf(Tile& tile, std::span<const std::uint8_t> exists, const SideGains& gains, const TileLattice& lattice) {
-    own_deviation(lattice, tile.deviation);
-    corner_radii(lattice, exists, false, {}, tile.radius);
-    const TileLayout& layout = tile_layout();
-    const Saturation s{layout, tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
+    measure_leaf(lattice, exists, tile.deviation, tile.radius);
+    static thread_local TileSaturation saturation;
+    saturation.start(tile.depth, lattice.rounded());
     const auto sides = side_cells(tile.depth);
     std::size_t k = sides.size(), g = gains.deviation.size();
-    for (unsigned first = 1u << (tile.depth - 1); first > 0; first >>= 1) {
-        for (unsigned i = first; i < 2 * first; ++i) s.raise(i);
-        for (unsigned i = first; i < 2 * first; ++i)
-            if (const unsigned beyond = layout.split_neighbor[i]; i < beyond) s.join(i, beyond);
-        for (; k > 0 && sides[k - 1].cell >= first; --k) {
+    for (int level = tile.depth - 1; level >= 0; --level) {
+        saturation.level(level, exists, tile.deviation, tile.radius);
+        for (; k > 0 && sides[k - 1].cell >= 1u << level; --k) {
             const unsigned i = sides[k - 1].cell;
             if (!exists[i]) continue;
             --g;
-            const std::uint64_t d = deviation_code(s.deviation[i]) + gains.deviation[g];
-            const std::uint64_t r = radius_code(s.radius[i]) + gains.radius[g];
+            const std::uint64_t d = std::uint64_t{deviation_code(tile.deviation[i])} + gains.deviation[g];
+            const std::uint64_t r = std::uint64_t{radius_code(tile.radius[i])} + gains.radius[g];
             if (d >= deviation_codes || r >= radius_codes) throw MalformedBytes("a record is out of range");
-            s.deviation[i] = deviation_from_code(static_cast<unsigned>(d));
-            s.radius[i] = radius_from_code(static_cast<unsigned>(r));
+            tile.deviation[i] = deviation_from_code(static_cast<unsigned>(d));
+            tile.radius[i] = radius_from_code(static_cast<unsigned>(r));
         }
     }
     tile.deviation[0] = tile.radius[0] = 0;
@@ -170,7 +136,7 @@ void read_leaf(ByteReader& in, bool whole, const TileScale& scale, Tile& tile) {
     const auto side_count = static_cast<std::size_t>(std::count(on_side.begin(), on_side.end(), 1));
     std::vector<std::uint8_t> exists(records);
     existence_inside(tile.depth, on_side, exists);
-    SideGains gains{std::vector<std::uint64_t>(side_count), std::vector<std::uint64_t>(side_count)};
+    SideGains gains{std::vector<std::uint32_t>(side_count), std::vector<std::uint32_t>(side_count)};
     {
         RiceReader rice(in);
         rice.group(gains.deviation);
@@ -203,14 +169,14 @@ void write_inner(ByteWriter& out, const BakedTile& baked) {
     write_bits(out, child);
     // Records of one level are alike: as a level's least one and what the others have above it.
     RiceWriter rice(out);
-    const auto write_codes = [&rice](std::vector<std::uint64_t>& codes) {
-        const std::uint64_t least = codes.empty() ? 0 : *std::min_element(codes.begin(), codes.end());
-        for (std::uint64_t& c : codes) c -= least;
+    const auto write_codes = [&rice](std::vector<std::uint32_t>& codes) {
+        const std::uint32_t least = codes.empty() ? 0 : *std::min_element(codes.begin(), codes.end());
+        for (std::uint32_t& c : codes) c -= least;
         rice.group({&least, 1});
         rice.group(codes);
     };
     for (unsigned first = 1; first < tile_cells; first *= 2) {
-        std::vector<std::uint64_t> deviation, radius;
+        std::vector<std::uint32_t> deviation, radius;
         for (unsigned i = first; i < 2 * first; ++i) {
             if (stores_deviation(i)) deviation.push_back(deviation_code(tile.deviation[i]));
             if (stores_radius(i)) radius.push_back(radius_code(tile.radius[i]));
@@ -219,7 +185,7 @@ void write_inner(ByteWriter& out, const BakedTile& baked) {
         write_codes(radius);
     }
     // Those of the roots below lie on the ladders, like all records on sides: exact.
-    std::vector<std::uint64_t> deviation, radius;
+    std::vector<std::uint32_t> deviation, radius;
     for (std::size_t k = 0; k < tile_cells; ++k) {
         if (!tile.child_exists[k]) continue;
         deviation.push_back(deviation_code(tile.child_deviation[k]));
@@ -229,14 +195,14 @@ void write_inner(ByteWriter& out, const BakedTile& baked) {
     write_codes(radius);
 }
 
-std::vector<std::uint64_t> read_codes(RiceReader& rice, std::size_t count, std::uint64_t end) {
-    std::uint64_t least = 0;
-    std::vector<std::uint64_t> codes(count);
+std::vector<std::uint32_t> read_codes(RiceReader& rice, std::size_t count, std::uint32_t end) {
+    std::uint32_t least = 0;
+    std::vector<std::uint32_t> codes(count);
     rice.group({&least, 1});
     rice.group(codes);
-    for (std::uint64_t& c : codes) {
+    for (std::uint32_t& c : codes) {
+        if (c >= end || least >= end - c) throw MalformedBytes("a record is out of range");
         c += least;
-        if (c >= end) throw MalformedBytes("a record is out of range");
     }
     return codes;
 }
@@ -255,11 +221,11 @@ void read_inner_level(RiceReader& rice, unsigned first, Tile& tile) {
     for (unsigned i = first; i < 2 * first; ++i) {
         const unsigned beyond = layout.split_neighbor[i];
         if (stores_deviation(i)) {
-            tile.deviation[i] = deviation_from_code(static_cast<unsigned>(deviation[d++]));
+            tile.deviation[i] = deviation_from_code(deviation[d++]);
             if (beyond != 0) tile.deviation[beyond] = tile.deviation[i];
         }
         if (stores_radius(i)) {
-            tile.radius[i] = radius_from_code(static_cast<unsigned>(radius[r++]));
+            tile.radius[i] = radius_from_code(radius[r++]);
             if (beyond != 0) tile.radius[beyond] = tile.radius[i];
         }
     }
@@ -273,8 +239,8 @@ void read_children(RiceReader& rice, Tile& tile) {
     tile.child_radius.assign(tile_cells, 0);
     for (std::size_t k = 0, c = 0; k < tile_cells; ++k) {
         if (!tile.child_exists[k]) continue;
-        tile.child_deviation[k] = deviation_from_code(static_cast<unsigned>(deviation[c]));
-        tile.child_radius[k] = radius_from_code(static_cast<unsigned>(radius[c++]));
+        tile.child_deviation[k] = deviation_from_code(deviation[c]);
+        tile.child_radius[k] = radius_from_code(radius[c++]);
     }
 }
 
@@ -297,15 +263,12 @@ void read_inner(ByteReader& in, const TileScale& scale, Tile& tile) {
     std::vector<float> start(tile_cells);
     corner_radii(lattice, exists, true, std::vector<std::uint8_t>(tile_cells / 2, 0), start);
     const TileLayout& layout = tile_layout();
-    const Saturation s{layout, tile.depth, tile.deviation, tile.radius, lattice.rounded(), exists};
-    for (unsigned first = tile_cells / 4; first > 0; first >>= 1) {
-        for (unsigned i = first; i < 2 * first; ++i) {
-            if (layout.split_neighbor[i] == 0) continue;
-            tile.radius[i] = start[i];
-            s.raise(i);
-        }
-        for (unsigned i = first; i < 2 * first; ++i)
-            if (const unsigned beyond = layout.split_neighbor[i]; i < beyond) s.join(i, beyond);
+    static thread_local TileSaturation saturation;
+    saturation.start(tile.depth, lattice.rounded());
+    for (int level = tile_levels - 2; level >= 0; --level) {
+        for (unsigned i = 1u << level; i < 2u << level; ++i)
+            if (layout.split_neighbor[i] != 0) tile.radius[i] = start[i];
+        saturation.level(level, exists, tile.deviation, tile.radius);
     }
 }
 
@@ -374,9 +337,7 @@ std::vector<std::uint8_t> encode_tile(const BakedTile& baked, const TileScale& s
     out.u8(static_cast<std::uint8_t>((baked.inner() ? flag_inner : 0) | (scale.has_undulation ? flag_undulation : 0) |
                                      (whole ? flag_whole : 0)));
     out.f32(tile.resampling);
-    std::vector<std::int64_t> q;
-    for (const float h : tile.height) q.push_back(in_quanta(static_cast<double>(h), scale.quantum_m));
-    write_lattice(out, q);
+    write_heights(out, tile.height, scale.quantum_m);
     if (scale.has_undulation) write_undulations(out, tile);
     if (baked.inner())
         write_inner(out, baked);
@@ -402,9 +363,7 @@ Tile decode_tile(LocationCode root, std::span<const std::uint8_t> bytes, const T
     tile.height.resize(tile_layout().vertex_count[static_cast<std::size_t>(tile.depth)]);
     tile.deviation.resize(std::size_t{1} << tile.depth);
     tile.radius.resize(std::size_t{1} << tile.depth);
-    const auto q = read_lattice(in, tile.height.size());
-    for (std::size_t v = 0; v < q.size(); ++v)
-        tile.height[v] = static_cast<float>(static_cast<double>(q[v]) * scale.quantum_m);
+    read_heights(in, tile.height, scale.quantum_m);
     if (scale.has_undulation) read_undulations(in, tile);
     if (inner)
         read_inner(in, scale, tile);

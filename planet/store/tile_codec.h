@@ -8,6 +8,7 @@
 #include "planet/mesh/placed_tile.h"
 #include "planet/mesh/tile.h"
 #include "planet/store/baked_tile.h"
+#include "planet/store/lattice_code.h"
 
 namespace planet {
 
@@ -31,9 +32,6 @@ void interpolate_undulations(LocationCode root, int depth, std::span<GeoidUndula
 
 /// Least and largest height over the tile's own existing vertices.
 void own_height_range(Tile& tile, std::span<const std::uint8_t> exists);
-
-/// Largest |height| in quanta that a tile can hold: heights stay exact in float.
-inline constexpr std::int64_t largest_height_quanta = std::int64_t{1} << 23;
 
 /// The bytes of a settled tile.
 std::vector<std::uint8_t> encode_tile(const BakedTile& baked, const TileScale& scale);

@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <set>
 
 #include "planet/mesh/placed_tile.h"
 #include "planet/mesh/smooth_ellipsoid.h"
@@ -34,16 +33,16 @@ class BallTiles final : public TileSource {
     }
 
     const PlacedTile* tile(LocationCode root) const override {
-        if (away.count(root.bits()) != 0) return nullptr;
         auto& slot = tiles_[root.bits()];
         if (!slot) slot = make(root);
         return slot.get();
     }
 
-    /// Roots of tiles that are not there for now.
-    std::set<std::uint64_t> away;
-    /// The tile forgets which tiles are below it. Its address stays.
-    void remake(LocationCode root) { *tiles_.at(root.bits()) = std::move(*make(root)); }
+    /// The tile comes or goes, for walks: the one above says whether it is there.
+    void set_there(LocationCode root, bool there) {
+        PlacedTile& above = *tiles_.at(root.ancestor(root.bisection_level() - tile_levels).bits());
+        above.set_child(static_cast<unsigned>(root.bits() & (tile_cells - 1)), there ? tile(root) : nullptr);
+    }
 
     std::size_t tile_count() const { return tiles_.size(); }
 

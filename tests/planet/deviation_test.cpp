@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "planet/mesh/saturation.h"
 #include "planet/store/tile_sides.h"
 
 namespace planet {
@@ -145,6 +146,105 @@ TEST(Deviation, FromAPlaneHeedsAllButTheRootsCorners) {
     for (const std::uint16_t v : vertices_below(1, 10))
         worst = std::max(worst, std::abs(plane.above(t.lattice.position(v), t.lattice.normal(v))));
     EXPECT_EQ(deviation_from(t.lattice, plane), worst);
+}
+
+// A whole tile, one with sides that lack records, and one of every depth.
+void expect_leaf_as_in_two_steps(RandomTile& t) {
+    t.set();
+    std::vector<float> deviation(t.exists.size()), radius(t.exists.size());
+    own_deviation(t.lattice, deviation);
+    corner_radii(t.lattice, t.exists, false, {}, radius);
+    std::vector<float> leaf_deviation(t.exists.size(), -1.0f), leaf_radius(t.exists.size(), -1.0f);
+    measure_leaf(t.lattice, t.exists, leaf_deviation, leaf_radius);
+    EXPECT_EQ(leaf_deviation, deviation);
+    EXPECT_EQ(leaf_radius, radius);
+    EXPECT_GT(*std::max_element(radius.begin(), radius.end()), 0.0f);
+}
+
+TEST(Deviation, OfALeafIsThatOfCellsAndCorners) {
+    for (int depth = 1; depth <= tile_levels; ++depth) {
+        SCOPED_TRACE(depth);
+        RandomTile t(*parse_code("N3.110011010101"), depth, static_cast<unsigned>(depth), 900);
+        expect_leaf_as_in_two_steps(t);
+        std::vector<std::uint8_t> on_side(side_cells(depth).size(), 1);
+        for (std::size_t k = 3; k < on_side.size(); k += 2) on_side[k] = 0;
+        existence_inside(depth, on_side, t.exists);
+        expect_leaf_as_in_two_steps(t);
+    }
+}
+
+// Planes of cells that hold the tile's root, at heights that put them near to and far from the tile.
+TEST(Deviation, HullBoundsEveryPlaneAndIsNotLoose) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> height(-4000, 4000);
+    for (const char* name : {"N1.010011010110", "S0.110100101101101001011010", "N0.000000000000", "S2"}) {
+        const LocationCode root = *parse_code(name);
+        for (int depth = 1; depth <= tile_levels; depth += 5) {
+            RandomTile t(root, depth, static_cast<unsigned>(depth) + 40, 300);
+            t.set();
+            const TileHull hull(t.lattice);
+            for (int level = 0; level <= root.bisection_level(); ++level) {
+                const Corners c = corners(root.ancestor(level));
+                const auto at = [&](const glm::dvec3& n) { return ecef_from_normal(wgs84, n, {height(random)}); };
+                const CellPlane plane(at(c.left), at(c.right), at(c.apex));
+                const double found = deviation_from(t.lattice, plane), bound = hull.deviation_bound(plane);
+                ASSERT_GE(bound, found) << name << " " << depth << " " << level;
+                double corner = 0;
+                for (std::size_t k = 0; k < 3; ++k)
+                    corner = std::max(corner, std::abs(plane.above(t.lattice.position(k), t.lattice.normal(k))));
+                if (root.bisection_level() > 0) {
+                    EXPECT_LT(bound, 1.3 * corner + 2000) << name << " " << depth << " " << level;
+                }
+                EXPECT_FALSE(hull.may_exceed(plane, certified_deviation(bound)));
+                EXPECT_TRUE(hull.may_exceed(plane, static_cast<float>(0.99 * found)));
+            }
+        }
+    }
+}
+
+TEST(Deviation, HullSaysNothingOfSteepPlanes) {
+    RandomTile t(*parse_code("N1.010011010110"), 4, 3, 300);
+    t.set();
+    const glm::dvec3 p = t.lattice.position(0), n = t.lattice.normal(0);
+    const CellPlane steep(p, p + n, p + glm::cross(n, glm::dvec3(0, 0, 1)));
+    EXPECT_TRUE(TileHull(t.lattice).may_exceed(steep, 1e30f));
+}
+
+// One record at a time, as the definition says.
+TEST(Deviation, SaturationIsThatOfEveryRecord) {
+    for (const int depth : {1, 2, 5, 12}) {
+        RandomTile t(*parse_code("S3.001011010100"), depth, 8, 700);
+        std::vector<std::uint8_t> on_side(side_cells(depth).size(), 1);
+        for (std::size_t k = 4; k < on_side.size(); k += 5) on_side[k] = 0;
+        existence_inside(depth, on_side, t.exists);
+        t.set();
+        std::vector<float> deviation(t.exists.size()), radius(t.exists.size());
+        measure_leaf(t.lattice, t.exists, deviation, radius);
+        std::vector<float> d = deviation, r = radius;
+        const TileLayout& layout = tile_layout();
+        for (int level = depth - 1; level >= 0; --level) {
+            for (unsigned i = 1u << level; i < 2u << level; ++i) {
+                if (!t.exists[i]) d[i] = r[i] = 0;
+                for (unsigned child = 2 * i; level < depth - 1 && child < 2 * i + 2; ++child) {
+                    if (!t.exists[i] || !t.exists[child]) continue;
+                    const auto m = [&](unsigned cell) { return t.lattice.rounded()[layout.split_vertex[cell]]; };
+                    d[i] = std::max(d[i], d[child]);
+                    r[i] = std::max(r[i], certified_radius(radius_over(m(i), m(child), r[child])));
+                }
+            }
+            for (unsigned i = 1u << level; i < 2u << level; ++i)
+                if (const unsigned beyond = layout.split_neighbor[i]; i < beyond) {
+                    d[i] = d[beyond] = std::max(d[i], d[beyond]);
+                    r[i] = r[beyond] = std::max(r[i], r[beyond]);
+                }
+        }
+        TileSaturation saturation;
+        saturation.start(depth, t.lattice.rounded());
+        for (int level = depth - 1; level >= 0; --level) saturation.level(level, t.exists, deviation, radius);
+        deviation[0] = radius[0] = d[0] = r[0] = 0;
+        EXPECT_EQ(deviation, d) << depth;
+        EXPECT_EQ(radius, r) << depth;
+    }
 }
 
 }  // namespace

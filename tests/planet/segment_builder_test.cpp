@@ -49,17 +49,20 @@ struct Built {
 // direction, they do not.
 TEST(SegmentBuilder, SlackIsHowFarTheEyeMayMove) {
     for (const double exaggeration : {1.0, 5.0}) {
-        const BallTiles tiles(26, 0.003, hills, exaggeration);
+        const BallTiles tiles(24, 0.003, hills, exaggeration);
         std::mt19937_64 random(17);
         std::normal_distribution<double> normal;
         const auto direction = [&] {
             return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
         };
+        const glm::dvec3 above[] = {direction(), direction()};
+        int changed = 0;
         for (int round = 0; round < 16; ++round) {
             SegmentView view;
             view.segment_leaves = 200;
             view.test.K = 100;
-            view.test.eye = direction() * (wgs84.a + 16000 * exaggeration + 1e4 * std::exp2(8 * (round % 9) / 9.0));
+            view.test.eye = above[static_cast<std::size_t>(round % 2)] *
+                            (wgs84.a + 16000 * exaggeration + 1e4 * std::exp2(8 * (round % 9) / 9.0));
             const glm::dvec3 below = glm::normalize(view.test.eye + 1e5 * direction());
             const PlacedCell face{tiles.tile(LocationCode::face_root(face_of(below))), 1};
             const Built at(tiles, view, face);
@@ -70,7 +73,6 @@ TEST(SegmentBuilder, SlackIsHowFarTheEyeMayMove) {
                                                                  glm::distance(b.sphere.centre, view.test.eye);
                                                       });
             ASSERT_LT(s.slack, 1e6);
-            ++tested;
             bool changes = false;
             for (int k = 0; k < 24; ++k) {
                 // Towards and away from what is near is where most tests change.
@@ -92,7 +94,6 @@ TEST(SegmentBuilder, SlackIsHowFarTheEyeMayMove) {
             }
             changed += changes;
         }
-        EXPECT_EQ(tested, 16);
         EXPECT_GT(changed, 8);
     }
 }
@@ -155,11 +156,11 @@ class Origins {
 
 TEST(SegmentBuilder, MorphsLeadToTheMiddleOfTheSideThatIsSplit) {
     for (const double exaggeration : {1.0, 3.0}) {
-        const BallTiles tiles(28, 0.001, hills, exaggeration);
+        const BallTiles tiles(26, 0.001, hills, exaggeration);
         SegmentView view;
         view.morph = true;
         view.segment_leaves = 100;
-        view.test = {ecef_from_normal(wgs84, normal_from_geodetic(0.4, 1.2), {2e4}), 250};
+        view.test = {ecef_from_normal(wgs84, normal_from_geodetic(0.4, 1.2), {2e4}), 120};
         Segments segments;
         segments.build(tiles, view);
         ASSERT_EQ(segments.morphs().size(), segments.vertices().size());
@@ -191,9 +192,12 @@ TEST(SegmentBuilder, MorphsLeadToTheMiddleOfTheSideThatIsSplit) {
                 const glm::dvec3 middle = 0.5 * (ecef_from_grid(a) + ecef_from_grid(b));
                 const glm::dvec3 weight_0 = ecef_from_grid(at) + glm::dvec3(m.x, m.y, m.z);
                 ASSERT_LE(glm::distance(weight_0, middle), 1e-6 * (1 + glm::distance(middle, ecef_from_grid(at))));
-                ASSERT_EQ(m.deviation,
-                          static_cast<float>(exaggeration * bounds[static_cast<std::size_t>(level)].deviation));
-                ASSERT_GE(m.radius, bounds[static_cast<std::size_t>(level)].radius);
+                const auto& bound = bounds[static_cast<std::size_t>(level)];
+                ASSERT_GE(static_cast<double>(m.deviation), bound.deviation);
+                if (exaggeration == 1) {
+                    ASSERT_EQ(static_cast<double>(m.deviation), bound.deviation);
+                }
+                ASSERT_GE(static_cast<double>(m.radius), bound.radius);
                 // It is there: its split test passes, to within the rounding of the record.
                 const double reach = static_cast<double>(m.radius) + view.test.K * static_cast<double>(m.deviation);
                 ASSERT_LT(glm::distance(view.test.eye, ecef_from_grid(at)), reach + 1);

@@ -204,7 +204,7 @@ TEST(SegmentsUpdate, FollowsTilesThatComeAndGo) {
     view.test.eye = view.culling.eye = n * (wgs84.a + 2e4);
     Segments segments;
     Witness witness;
-    std::set<std::uint64_t> used;
+    std::set<std::uint64_t> used, away;
     for (int f = 0; f < 60; ++f) {
         if (f % 3 != 0) view.test.eye += glm::dvec3(unit(random), unit(random), unit(random)) * 300.0;
         segments.update(tiles, view);
@@ -217,8 +217,9 @@ TEST(SegmentsUpdate, FollowsTilesThatComeAndGo) {
             auto at = used.begin();
             std::advance(at, static_cast<std::ptrdiff_t>(random() % used.size()));
             changed.emplace_back(*at);
-            if (!tiles.away.erase(*at)) tiles.away.insert(*at);
-            tiles.remake(LocationCode(*at).ancestor(12));
+            const bool there = away.erase(*at) != 0;
+            if (!there) away.insert(*at);
+            tiles.set_there(LocationCode(*at), there);
         }
         const auto before = segments.hash();
         segments.invalidate(changed);

@@ -135,8 +135,8 @@ TEST_F(StoreFile, FilesThatAreNoStoreAreRefusedInOneLine) {
     EXPECT_TRUE(says(refusal(path("short.octa")), "not an elevation store"));
     sql(path("other.octa"), "CREATE TABLE t(x)");
     EXPECT_TRUE(says(refusal(path("other.octa")), "SQLite"));
-    sql(baked("newer.octa"), "PRAGMA user_version = 2");
-    EXPECT_TRUE(says(refusal(path("newer.octa")), "version 2 is newer"));
+    sql(baked("newer.octa"), "PRAGMA user_version = 3");
+    EXPECT_TRUE(says(refusal(path("newer.octa")), "version 3 is newer"));
     BakeOptions on_mars = options();
     on_mars.ellipsoid = mars;
     bake(field(), on_mars, path("mars.octa"));
@@ -306,13 +306,10 @@ TEST_F(StoreFile, AnInterruptedTransactionIsRolledBackOnOpening) {
 TEST_F(StoreFile, WhatCannotBeWrittenLeavesNothingBehind) {
     EXPECT_THROW(bake(field(), options(), path("no folder") / "a.octa"), Error);
     EXPECT_FALSE(std::filesystem::exists(path("no folder")));
-    BakeOptions stops = options();
-    stops.progress = [](std::string_view step, double fraction) {
-        if (step == "writing" && fraction == 1) throw Error(Fault::bad_usage, "test", "stopped");
-    };
-    EXPECT_THROW(bake(field(), stops, path("b.octa")), Error);
+    BakeOptions small = options();
+    small.memory_bytes = 1;
+    EXPECT_THROW(bake(field(), small, path("b.octa")), Error);
     EXPECT_FALSE(std::filesystem::exists(path("b.octa")));
-    EXPECT_FALSE(std::filesystem::exists(path("b.octa").string() + "-journal"));
 }
 
 TEST_F(StoreFile, ReadingIsSafeFromSeveralThreads) {

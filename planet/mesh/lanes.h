@@ -1,0 +1,79 @@
+#pragma once
+// As many doubles at a time as a register holds, for the loops over a tile's vertices and cells. Elementwise, so the
+// same bits for any width. For .cpp files: these types are no part of an interface.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace planet {
+
+#if defined(__AVX512F__)
+inline constexpr std::size_t lane_count = 8;
+#elif defined(__AVX__)
+inline constexpr std::size_t lane_count = 4;
+#else
+inline constexpr std::size_t lane_count = 2;
+#endif
+
+typedef double Lanes __attribute__((vector_size(lane_count * sizeof(double))));
+typedef std::int64_t WholeLanes __attribute__((vector_size(lane_count * sizeof(double))));
+typedef float NarrowLanes __attribute__((vector_size(lane_count * sizeof(float))));
+typedef std::int32_t WholeNarrowLanes __attribute__((vector_size(lane_count * sizeof(float))));
+
+inline Lanes absolute(Lanes v) {
+    return reinterpret_cast<Lanes>(reinterpret_cast<WholeLanes>(v) & INT64_MAX);
+}
+
+/// The larger one; the second if either is NaN.
+inline Lanes larger(Lanes a, Lanes b) {
+    return a > b ? a : b;
+}
+
+inline Lanes smaller(Lanes a, Lanes b) {
+    return a < b ? a : b;
+}
+
+inline Lanes square_root(Lanes v) {
+    double each[lane_count];
+    std::memcpy(each, &v, sizeof v);
+    for (double& x : each) x = std::sqrt(x);
+    std::memcpy(&v, each, sizeof v);
+    return v;
+}
+
+inline Lanes load_lanes(const double* from) {
+    Lanes v;
+    std::memcpy(&v, from, sizeof v);
+    return v;
+}
+
+inline void store_lanes(const Lanes& v, double* to) {
+    std::memcpy(to, &v, sizeof v);
+}
+
+/// Lane w is at(w).
+template <class At>
+inline Lanes gather_lanes(At at) {
+    if constexpr (lane_count == 8)
+        return Lanes{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
+    else if constexpr (lane_count == 4)
+        return Lanes{at(0), at(1), at(2), at(3)};
+    else
+        return Lanes{at(0), at(1)};
+}
+
+/// Planes of cells, one a lane: see CellPlane.
+struct LanePlane {
+    Lanes corner[3], normal[3];
+
+    /// t of deviation.h is over() / under().
+    Lanes over(const Lanes* point) const {
+        return (corner[0] - point[0]) * normal[0] + (corner[1] - point[1]) * normal[1] +
+               (corner[2] - point[2]) * normal[2];
+    }
+    Lanes under(const Lanes* n) const { return n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2]; }
+};
+
+}  // namespace planet
