@@ -201,8 +201,6 @@ void run(BakeCommand& command) {
     }();
     set_geoid(command.bake, geoid);
     command.bake.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };
-    command.bake.resume = command.resume;
-    command.bake.replace = command.replace;
     const planet::BakeReport baked = planet::bake(*field, command.bake, command.output);
     if (target == BakeTarget::finished) {  // of these sources and options, else it were refused
         progress.clear();
