@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "planet/mesh/deviation.h"
 #include "planet/octahedron/octahedron_map.h"
 
 namespace planet {
@@ -73,24 +74,23 @@ PlacedTile::StoredRecord PlacedTile::stored(std::size_t vertex) const {
 }
 
 void PlacedTile::place(const Placement& placement) {
-    const std::vector<glm::dvec3> normals = tile_normals(root, depth);
-    std::vector<glm::vec3> rounded(normals.size());
-    position.resize(normals.size());
-    for (std::size_t v = 0; v < normals.size(); ++v) {
-        const GeoidUndulation N{undulation_.empty() ? 0.0 : static_cast<double>(undulation_[v])};
-        const glm::dvec3 p = placement.ecef(normals[v], static_cast<double>(height[v]), N);
-        position[v] = grid_from_ecef(p);
-        rounded[v] = glm::vec3(p);
-    }
-    place_records(rounded, placement.exaggeration);
-    if (!child_bound.empty()) bound_children(rounded, placement.exaggeration);
+    static thread_local TileLattice lattice;
+    static thread_local std::vector<GeoidUndulation> undulation;
+    undulation.resize(undulation_.size());
+    for (std::size_t v = 0; v < undulation.size(); ++v) undulation[v].m = static_cast<double>(undulation_[v]);
+    lattice.set_normals(corners(root), depth);
+    lattice.set_positions(placement, height, undulation, {});
+    position.resize(lattice.size());
+    for (std::size_t v = 0; v < lattice.size(); ++v) position[v] = grid_from_ecef(lattice.position(v));
+    place_records(lattice.rounded(), placement.exaggeration);
+    if (!child_bound.empty()) bound_children(lattice.rounded(), placement.exaggeration);
     if (placement.exaggeration == 1.0) stored_ = {};
 }
 
 // Exaggeration e >= 1 stretches distances and deviations by at most e (the part that is curvature is not stretched), so
 // e * radius and e * deviation keep the test nested. The stored radii hold for split vertices rounded to float at e = 1;
 // at another e the roundings differ by up to 0.9 (1 + e) m a level, which the last term covers.
-void PlacedTile::place_records(const std::vector<glm::vec3>& rounded, double exaggeration) {
+void PlacedTile::place_records(std::span<const glm::vec3> rounded, double exaggeration) {
     const TileLayout& layout = tile_layout();
     const double e = std::max(1.0, exaggeration);
     const double slack = exaggeration == 1.0 ? 0.0 : 2.0 * (1.0 + e);
@@ -113,7 +113,7 @@ void PlacedTile::place_records(const std::vector<glm::vec3>& rounded, double exa
 // The split vertex of a root below is not known here, but it lies near the middle of the chord of its split side: the
 // plane of its cell meets its normal there, to second order, and the certified deviation bounds how far it is from that
 // plane. 2 % of the side covers the second order and the roundings of an exaggerated record (see place_records).
-void PlacedTile::bound_children(const std::vector<glm::vec3>& rounded, double exaggeration) {
+void PlacedTile::bound_children(std::span<const glm::vec3> rounded, double exaggeration) {
     const TileLayout& layout = tile_layout();
     const double e = std::max(1.0, exaggeration);
     const double rounding = 2.0 * (1.0 + e) * (max_bisection_level + 1);
