@@ -587,8 +587,15 @@ TEST(ResidentTiles, WhatLiesAheadIsThereWhenTheEyeArrives) {
 TEST(ResidentTiles, WhatLiesAheadTakesOnlyTheMemoryThatIsLeft) {
     const SegmentView now = view_from(testing::PatchyField::patches[1].cap.centre, 1e5, 400),
                       later = view_from(testing::PatchyField::patches[2].cap.centre, 1e5, 2000);
+    std::size_t needed = 0;
+    {
+        const TileCache cache(store());
+        ResidentTiles tiles(cache, {}, 2);
+        tiles.settle(now);
+        needed = tiles.counts().tile_bytes;
+    }
     std::vector<std::size_t> loaded;
-    for (const std::size_t limit : {1'000'000, 3'000'000, 100'000'000}) {
+    for (const std::size_t limit : {needed / 2, needed + 700'000, needed + 100'000'000}) {
         const TileCache cache(store(), limit);
         ResidentTiles tiles(cache, {}, 2);
         tiles.settle(now);
