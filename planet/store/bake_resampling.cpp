@@ -42,10 +42,9 @@ void TileResampling::add(const Surface& surface, LocationCode cell) {
         for (int i = 0; i < 2; ++i) add(surface, cell.child(i));
         return;
     }
-    normals_.clear();
-    heights_.clear();
-    surface.field.samples(cap, normals_, heights_);
-    distance_.add(normals_, heights_);
+    surface.field.sample_rows(cap, [this](std::span<const glm::dvec3> normals, std::span<const float> heights) {
+        distance_.add(normals, heights);
+    });
 }
 
 }  // namespace planet

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "planet/elevation/elevation_field.h"
 #include "planet/store/sample_distance.h"
@@ -34,8 +33,6 @@ class TileResampling {
     void add(const Surface& surface, LocationCode cell);
 
     SampleDistance distance_;
-    std::vector<glm::dvec3> normals_;
-    std::vector<float> heights_;
 };
 
 }  // namespace planet
