@@ -182,7 +182,8 @@ void run(BakeCommand& command) {
     Report report("bake", command.json);
     set_levels(command);
     const std::size_t shared = command.memory_bytes - program_memory;
-    command.bake.memory_bytes = shared / 2;
+    const std::size_t for_sources = shared / 4;
+    command.bake.memory_bytes = shared - for_sources;
     check_bake_sources(command);
     const BakeTarget target = check_bake_target(command.output, command.bake.resume, command.bake.replace);
     if (command.sources.empty() && !command.over_earth && target != BakeTarget::finished)
@@ -196,7 +197,7 @@ void run(BakeCommand& command) {
     const auto geoid = std::make_shared<const planet::Geoid>(data_file("egm96-15.pgm"));
     const auto field = [&] {
         const auto step = report.step("sources");
-        return open_bake_sources(command, geoid, shared / 2,
+        return open_bake_sources(command, geoid, for_sources,
                                  [&](double fraction) { progress.update("sources", fraction); });
     }();
     set_geoid(command.bake, geoid);
