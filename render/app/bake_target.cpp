@@ -1,13 +1,16 @@
 #include "render/app/bake_target.h"
 
+#include <unistd.h>
+
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <system_error>
 
 #include "planet/error.h"
 #include "planet/store/elevation_store.h"
 #include "planet/store/store_tables.h"
-#include "render/app/output_file.h"
 #include "render/app/values.h"
 
 namespace render {
@@ -18,6 +21,14 @@ namespace fs = std::filesystem;
 [[noreturn]] void refuse(const fs::path& output, std::string_view what, std::string_view accepted) {
     throw planet::Error(planet::Fault::bad_usage, "--output", shown(output.native()) + " " + std::string(what),
                         accepted);
+}
+
+/// Without a file to try it with: a bake that is killed leaves nothing but its store.
+void check_folder(const fs::path& output) {
+    const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        refuse(output, "cannot be written: " + std::generic_category().message(errno),
+               "a file in a folder that exists and can be written");
 }
 
 /// Whether the file begins as an SQLite file with the application id of stores, whatever its version and state.
@@ -37,7 +48,7 @@ BakeTarget check_bake_target(const fs::path& output, bool resume, bool replace) 
     std::error_code ignored;
     const fs::file_status status = fs::status(output, ignored);
     if (!fs::exists(status)) {
-        const OutputFile writable("--output", output);
+        check_folder(output);
         return BakeTarget::absent;
     }
     if (!fs::is_regular_file(status))
@@ -47,7 +58,7 @@ BakeTarget check_bake_target(const fs::path& output, bool resume, bool replace) 
     if (!empty && !is_store(output)) refuse(output, "is there, and no elevation store", "another name");
     if (empty && (resume || replace)) return BakeTarget::absent;
     if (replace) {
-        const OutputFile writable("--output", output);
+        check_folder(output);
         return BakeTarget::replaced;
     }
     if (empty) refuse(output, "is there already, and empty", "--replace, or another name");
