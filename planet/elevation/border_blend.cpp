@@ -33,14 +33,15 @@ void BorderBlend::build(int first, int count) {
     for (auto p = begin; p != end; ++p) {
         low = glm::min(low, p->normal);
         high = glm::max(high, p->normal);
-        node.centre += p->normal;
-        node.difference += p->difference;
-        node.reach += p->reach;
+        node.centre += p->count * p->normal;
+        node.difference += p->count * p->difference;
+        node.reach += p->count * p->reach;
+        node.weight += p->count;
         node.max_reach = std::max(node.max_reach, p->reach);
     }
-    node.centre /= count;
-    node.difference /= count;
-    node.reach /= count;
+    node.centre /= node.weight;
+    node.difference /= node.weight;
+    node.reach /= node.weight;
     for (auto p = begin; p != end; ++p) node.radius = std::max(node.radius, glm::distance(p->normal, node.centre));
     const std::size_t index = nodes_.size();
     nodes_.push_back(node);
@@ -76,13 +77,13 @@ void BorderBlend::gather(std::size_t index, const glm::dvec3& p, double& weights
     const double r = glm::distance(p, node.centre);
     if (r - node.radius >= node.max_reach + clearance_) return;
     if (node.radius < 0.125 * r) {
-        const double w = node.count * weight(r, node.reach + clearance_);
+        const double w = node.weight * weight(r, node.reach + clearance_);
         weights += w;
         total += w * node.difference;
     } else if (node.right == 0) {
         for (int i = node.first; i < node.first + node.count; ++i) {
             const Point& q = points_[static_cast<std::size_t>(i)];
-            const double w = weight(glm::distance(p, q.normal), q.reach + clearance_);
+            const double w = q.count * weight(glm::distance(p, q.normal), q.reach + clearance_);
             weights += w;
             total += w * q.difference;
         }

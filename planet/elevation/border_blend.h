@@ -19,6 +19,7 @@ class BorderBlend {
         glm::dvec3 normal;  ///< unit
         double difference;  ///< m
         double reach;       ///< > 0, chord on the unit sphere
+        double count = 1;   ///< how many points it stands for
     };
 
     BorderBlend() = default;
@@ -28,14 +29,16 @@ class BorderBlend {
     /// Metres to add to the coarser field at a unit normal. 0 beyond the reach of every point.
     double operator()(const glm::dvec3& normal) const;
 
+    std::size_t bytes() const { return sizeof *this + points_.size() * sizeof(Point) + nodes_.size() * sizeof(Node); }
+
   private:
     struct Node {
         glm::dvec3 centre;                 // mean of its points
         double radius = 0;                 // all of them are within
         double difference = 0, reach = 0;  // means
-        double max_reach = 0;
-        int first = 0, count = 0;  // its points
-        int right = 0;             // second child; the first follows its parent. 0: a leaf
+        double max_reach = 0, weight = 0;  // the sum of their counts
+        int first = 0, count = 0;          // its points
+        int right = 0;                     // second child; the first follows its parent. 0: a leaf
     };
 
     void build(int first, int count);

@@ -1,9 +1,37 @@
 #include "planet/elevation/elevation_field.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 namespace planet {
 
 std::string_view name_of(VerticalDatum datum) {
     return datum == VerticalDatum::ellipsoid ? "ellipsoid" : "egm96";
+}
+
+void ElevationField::sample_rows(const Cap& cap, const SampleRowVisitor& visit) const {
+    std::vector<glm::dvec3> normals;
+    std::vector<float> heights;
+    samples(cap, normals, heights);
+    if (!normals.empty()) visit(normals, heights);
+}
+
+void append_samples(const ElevationField& field, const Cap& cap, std::vector<glm::dvec3>& normals,
+                    std::vector<float>& heights) {
+    const double least_cosine = std::cos(std::min(cap.angle, std::numbers::pi));
+    field.sample_rows(cap, [&](std::span<const glm::dvec3> n, std::span<const float> h) {
+        std::size_t kept = normals.size();
+        normals.resize(kept + n.size());
+        heights.resize(kept + n.size());
+        for (std::size_t i = 0; i < n.size(); ++i) {
+            normals[kept] = n[i];
+            heights[kept] = h[i];
+            kept += glm::dot(n[i], cap.centre) >= least_cosine && !std::isnan(h[i]) ? 1 : 0;
+        }
+        normals.resize(kept);
+        heights.resize(kept);
+    });
 }
 
 }  // namespace planet

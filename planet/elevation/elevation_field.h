@@ -1,6 +1,7 @@
 #pragma once
 // An elevation field answers heights at directions and says how fine it is where. Its vertical datum is part of it.
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
@@ -26,13 +27,17 @@ struct Cap {
     double angle = 0;            ///< rad, 0..pi
 };
 
+/// Normals and heights in metres, of the same size; good for the time of the call.
+using SampleRowVisitor = std::function<void(std::span<const glm::dvec3> normals, std::span<const float> heights)>;
+
 /// What a report says of a source.
 struct SourceInfo {
     std::string name;      ///< file name without its folder, or a description of a made-up field
     std::string checksum;  ///< SHA-256 of what determines the heights, 64 hex digits
     std::string crs;       ///< "EPSG:4326" or WKT; empty for made-up fields
     VerticalDatum datum = VerticalDatum::egm96;
-    double spacing_m = 0;  ///< sqrt(dx dy) of its samples on the ground at its centre; 0: as fine as you like
+    double spacing_m = 0;        ///< sqrt(dx dy) of its samples on the ground at its centre; 0: as fine as you like
+    bool datum_assumed = false;  ///< neither the file nor the user said so
 };
 
 /// Implementations are immutable after construction and safe to read from several threads.
@@ -54,11 +59,22 @@ class ElevationField {
     /// lost. Fields without samples append nothing.
     virtual void samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const = 0;
 
+    /// Calls visit with runs of samples that lie next to each other in a row of a source: every sample in the cap once,
+    /// and some outside of it. Voids and samples that do not show are NaN. Faster than samples(), which copies.
+    virtual void sample_rows(const Cap& cap, const SampleRowVisitor& visit) const;
+
     virtual std::vector<SourceInfo> sources() const = 0;
 
-    /// Appends directions just inside the border of what the field covers, voids included, about two a sample: where a
-    /// coarser field must be led up to this one. Fields that cover everything append nothing.
-    virtual void border(std::vector<glm::dvec3>& normals) const { (void)normals; }
+    /// Appends directions in the cap just inside the border of what the field covers, voids included, about two a
+    /// sample: where a coarser field must be led up to this one. Fields that cover everything append nothing.
+    /// @param every  1, or n for those of every n-th sample only
+    virtual void border(const Cap& cap, std::size_t every, std::vector<glm::dvec3>& normals) const {
+        static_cast<void>(cap);
+        static_cast<void>(every);
+        static_cast<void>(normals);
+    }
+    /// How many directions border() has in all.
+    virtual std::size_t border_size() const { return 0; }
 
     float height(const glm::dvec3& normal) const {
         float h = 0;
@@ -66,5 +82,9 @@ class ElevationField {
         return h;
     }
 };
+
+/// Appends what sample_rows() visits, but for NaN and what is outside of the cap.
+void append_samples(const ElevationField& field, const Cap& cap, std::vector<glm::dvec3>& normals,
+                    std::vector<float>& heights);
 
 }  // namespace planet

@@ -18,7 +18,7 @@ PoleRow pole_row(double rows_beyond) {
 
 }  // namespace
 
-int columns_around(const Raster& raster) {
+int columns_around(const RasterHeader& raster) {
     const SampleGrid& g = raster.grid;
     if (!raster.geographic() || g.per_column.y != 0 || g.per_row.x != 0 || g.per_column.x == 0) return 0;
     const double columns = 360 / std::abs(g.per_column.x);
@@ -27,7 +27,7 @@ int columns_around(const Raster& raster) {
     return 0;
 }
 
-Poles poles_of(const Raster& raster) {
+Poles poles_of(const RasterHeader& raster) {
     const int around = columns_around(raster);
     if (around == 0 || around % 2 != 0 || raster.height < 2) return {};
     const double step = std::abs(raster.grid.per_row.y);

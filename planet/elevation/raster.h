@@ -1,5 +1,5 @@
 #pragma once
-// A grid of heights in memory, as its file holds it: compact, georeferenced, with its samples at pixel centres.
+// A grid of heights, as its file holds it: compact, georeferenced, with its samples at pixel centres.
 
 #include <cmath>
 #include <cstdint>
@@ -40,16 +40,15 @@ struct SampleGrid {
 inline constexpr std::int16_t void_sample = -32768;   ///< no height known
 inline constexpr std::int16_t water_sample = -32767;  ///< open water: height 0, flat (see surface_field.h)
 
-/// A grid of heights. Metres = offset + scale * sample.
-struct Raster {
+/// What a raster is, without its samples. Metres = offset + scale * sample.
+struct RasterHeader {
     int width = 0, height = 0;  ///< at least 1 each
-    /// Row-major in the order of the file, width * height of them. 16-bit where the source fits, so that a large DEM
-    /// takes two bytes a sample.
-    std::variant<std::vector<std::int16_t>, std::vector<float>> samples;
     double scale = 1, offset = 0;
 
     SampleGrid grid;
-    std::string crs;  ///< "EPSG:4326", or WKT
+    std::string crs;  ///< "EPSG:4326", or WKT; of the horizontal part
+    /// What the file says that its heights are measured from: "EPSG:5773" or a name, "ellipsoid", or empty.
+    std::string vertical_crs;
     /// Null if the grid is in (longitude, latitude) degrees of the planet itself, or plain; else how to get there.
     std::shared_ptr<const CoordinateTransform> transform;
     double radius_m = 6378137;  ///< semi-major axis of the CRS's ellipsoid
@@ -63,6 +62,14 @@ struct Raster {
 
     bool geographic() const { return !transform && !plain; }
     std::size_t count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+};
+
+/// A grid of heights, all in memory.
+struct Raster : RasterHeader {
+    /// Row-major in the order of the file, width * height of them. 16-bit where the source fits, so that a large DEM
+    /// takes two bytes a sample.
+    std::variant<std::vector<std::int16_t>, std::vector<float>> samples;
+
     /// A height in metres; NaN where void. Column and row within the grid.
     double at(int column, int row) const {
         const auto i =
@@ -78,7 +85,7 @@ struct Raster {
 
 /// Columns in a full turn of longitude if the raster goes all the way around, else 0. A last column that repeats the
 /// first one is allowed.
-int columns_around(const Raster& raster);
+int columns_around(const RasterHeader& raster);
 
 /// Where a geographic, upright raster ends at a pole. `first` is the end at row 0, `last` that at row height-1.
 enum class PoleRow {
@@ -90,6 +97,6 @@ struct Poles {
     PoleRow first = PoleRow::none, last = PoleRow::none;
 };
 /// Only rasters with an even number of columns_around continue across a pole; for others both are none.
-Poles poles_of(const Raster& raster);
+Poles poles_of(const RasterHeader& raster);
 
 }  // namespace planet

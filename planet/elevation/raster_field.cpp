@@ -4,35 +4,71 @@
 #include <cassert>
 #include <numbers>
 
+#include "planet/parallel.h"
+
 namespace planet {
 namespace {
-
-constexpr std::size_t max_border = std::size_t{4} << 20;
 
 double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::distance(a, b)));
 }
 
+// Heights in metres as Raster::at has them.
+template <class Sample>
+void to_metres(const RasterHeader& raster, const Sample* samples, std::span<float> out) {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const float metres = static_cast<float>(raster.offset + raster.scale * static_cast<double>(samples[i]));
+        if constexpr (std::is_same_v<Sample, std::int16_t>) {
+            const float marked = samples[i] == void_sample ? std::numeric_limits<float>::quiet_NaN() : metres;
+            out[i] = samples[i] == water_sample ? 0 : marked;
+        } else {
+            out[i] = std::isinf(samples[i]) ? 0 : metres;
+        }
+    }
+}
+
+// Two positions a side: those of every n-th side. @param sides  of the rows before, counted on
+void keep_every(std::size_t every, std::size_t& sides, std::vector<glm::dvec2>& at) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < at.size(); i += 2) {
+        if (sides++ % every != 0) continue;
+        at[kept++] = at[i];
+        at[kept++] = at[i + 1];
+    }
+    at.resize(kept);
+}
+
 }  // namespace
 
-RasterField::RasterField(std::shared_ptr<const Raster> raster, VerticalDatum datum)
-    : raster_(std::move(raster)), datum_(datum), map_(*raster_), surface_(*raster_) {
-    build_blocks();
+RasterField::RasterField(std::shared_ptr<const RasterSamples> samples, RasterSurvey survey, VerticalDatum datum,
+                         bool datum_assumed)
+    : samples_(std::move(samples)),
+      survey_(std::move(survey)),
+      datum_(datum),
+      datum_assumed_(datum_assumed),
+      map_(samples_->header()),
+      surface_(samples_->header(), survey_) {
+    std::vector<RasterBlocks::Block> blocks(survey_.fill.size());
+    parallel_for(static_cast<std::size_t>(survey_.block_rows), 0, [&](std::size_t row) {
+        const auto columns = static_cast<std::size_t>(survey_.block_columns);
+        for (std::size_t column = 0; column < columns; ++column)
+            blocks[row * columns + column] = make_block(static_cast<int>(column), static_cast<int>(row));
+    });
+    blocks_ = RasterBlocks(survey_.block_columns, survey_.block_rows, blocks);
 }
+
+RasterField::RasterField(std::shared_ptr<const Raster> raster, VerticalDatum datum)
+    : RasterField(std::make_shared<const WholeRaster>(raster), survey(WholeRaster(raster)), datum) {}
 
 void RasterField::heights(std::span<const glm::dvec3> normals, std::span<float> out) const {
     assert(out.size() == normals.size());
+    SampleCursor cursor(*samples_);
     glm::dvec2 at[256];
     for (std::size_t first = 0; first < normals.size(); first += std::size(at)) {
         const std::size_t n = std::min(std::size(at), normals.size() - first);
         map_.samples_from_normals(normals.subspan(first, n), {at, n});
-        for (std::size_t i = 0; i < n; ++i) surface_.prefetch(at[i]);
-        for (std::size_t i = 0; i < n; ++i) out[first + i] = surface_(at[i]);
+        surface_.heights(cursor, {at, n}, out.subspan(first, n));
     }
-}
-
-int RasterField::columns_without_repeat() const {
-    return surface_.columns_around() > 0 ? surface_.columns_around() : raster_->width;
 }
 
 double RasterField::spacing_at(glm::dvec2 sample) const {
@@ -42,15 +78,15 @@ double RasterField::spacing_at(glm::dvec2 sample) const {
     map_.normals_from_samples(at, n);
     const double x = glm::distance(n[0], n[1]), y = glm::distance(n[2], n[3]);
     const double longer = std::max(x, y);
-    return raster_->radius_m * std::sqrt(longer * std::max(std::min(x, y), 0.25 * longer));
+    return raster().radius_m * std::sqrt(longer * std::max(std::min(x, y), 0.25 * longer));
 }
 
-RasterField::Block RasterField::make_block(int column, int row, int columns, int rows) const {
-    Block block{{0, 0, 0}, 0, std::numeric_limits<double>::infinity()};
-    bool any = false;
-    for (int r = row; r < row + rows && !any; ++r)
-        for (int c = column; c < column + columns && !any; ++c) any = surface_.has_sample(c, r);
-    if (!any) return block;
+RasterBlocks::Block RasterField::make_block(int block_column, int block_row) const {
+    RasterBlocks::Block block;
+    if (survey_.fill_at(block_column, block_row) == RasterSurvey::Fill::none) return block;
+    const int size = survey_.block_size;
+    const int column = block_column * size, row = block_row * size;
+    const int columns = std::min(size, survey_.columns - column), rows = std::min(size, raster().height - row);
     std::array<glm::dvec2, 25> at;
     std::array<glm::dvec3, 25> n;
     for (std::size_t k = 0; k < at.size(); ++k)
@@ -70,119 +106,120 @@ RasterField::Block RasterField::make_block(int column, int row, int columns, int
     return block;
 }
 
-RasterField::Block RasterField::make_group(int column, int row) const {
-    Block group{{0, 0, 0}, 0, std::numeric_limits<double>::infinity()};
-    const int columns = std::min(column + group_size, block_columns_), rows = std::min(row + group_size, block_rows_);
-    for (int j = row; j < rows; ++j)
-        for (int i = column; i < columns; ++i) {
-            const Block& b = block(i, j);
-            if (std::isinf(b.spacing)) continue;
-            if (std::isinf(group.spacing)) group.centre = b.centre;
-            group.angle = std::max(group.angle, angle_between(b.centre, group.centre) + b.angle);
-            group.spacing = std::min(group.spacing, b.spacing);
-        }
-    return group;
-}
-
-void RasterField::build_blocks() {
-    const int w = columns_without_repeat(), h = raster_->height;
-    block_size_ =
-        std::clamp(std::max(w, h) / 32, 8, max_block);  // a coarse raster of the planet: still some 10 degrees
-    block_columns_ = (w + block_size_ - 1) / block_size_;
-    block_rows_ = (h + block_size_ - 1) / block_size_;
-    blocks_.reserve(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_));
-    for (int j = 0; j < h; j += block_size_)
-        for (int i = 0; i < w; i += block_size_)
-            blocks_.push_back(make_block(i, j, std::min(block_size_, w - i), std::min(block_size_, h - j)));
-    for (int j = 0; j < block_rows_; j += group_size)
-        for (int i = 0; i < block_columns_; i += group_size) groups_.push_back(make_group(i, j));
-}
-
-template <class Visit>
-void RasterField::visit_blocks(const Cap& cap, Visit visit) const {
-    double wanted = std::numeric_limits<double>::infinity();
-    const auto meets = [&](const Block& b) {
-        return b.spacing < wanted && angle_between(b.centre, cap.centre) <= b.angle + cap.angle;
-    };
-    std::size_t group = 0;
-    for (int row = 0; row < block_rows_; row += group_size)
-        for (int column = 0; column < block_columns_; column += group_size) {
-            if (!meets(groups_[group++])) continue;
-            for (int j = row; j < std::min(row + group_size, block_rows_); ++j)
-                for (int i = column; i < std::min(column + group_size, block_columns_); ++i)
-                    if (meets(block(i, j))) wanted = visit(i, j, block(i, j));
-        }
-}
-
 double RasterField::spacing(const Cap& cap) const {
     double least = std::numeric_limits<double>::infinity();
-    visit_blocks(cap, [&](int, int, const Block& b) { return least = b.spacing; });
+    blocks_.visit(cap, [&](int, int, double spacing) { return least = spacing; });
     return least;
 }
 
-void RasterField::samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const {
+void RasterField::sample_rows(const Cap& cap, const SampleRowVisitor& visit) const {
     const double least_cosine = std::cos(std::min(cap.angle, std::numbers::pi));
-    visit_blocks(cap, [&](int i, int j, const Block&) {
-        samples_of_block(i * block_size_, j * block_size_, cap, least_cosine, normals, heights);
+    const int size = survey_.block_size;
+    SampleCursor cursor(*samples_);
+    std::vector<glm::dvec3> normals(static_cast<std::size_t>(size));
+    std::vector<float> heights(static_cast<std::size_t>(size));
+    blocks_.visit(cap, [&](int i, int j, double) {
+        const int last_column = std::min((i + 1) * size, survey_.columns);
+        const int last_row = std::min((j + 1) * size, raster().height);
+        const SampleMap::RowsInCap in_cap(map_, i * size, last_column - i * size, cap.centre, least_cosine);
+        for (int row = j * size; row < last_row; ++row) {
+            const auto [first, last] = in_cap.find(row);
+            if (first == last) continue;
+            const auto n = static_cast<std::size_t>(last - first);
+            map_.normals_of_row(i * size + first, row, {normals.data(), n});
+            heights_of_row(cursor, i * size + first, row, {heights.data(), n});
+            visit({normals.data(), n}, {heights.data(), n});
+        }
         return std::numeric_limits<double>::infinity();
     });
 }
 
-void RasterField::samples_of_block(int column, int row, const Cap& cap, double least_cosine,
-                                   std::vector<glm::dvec3>& normals, std::vector<float>& heights) const {
-    const int columns = std::min(block_size_, columns_without_repeat() - column);
-    const int rows = std::min(block_size_, raster_->height - row);
-    std::array<glm::dvec3, max_block> line;
-    for (int r = row; r < row + rows; ++r) {
-        const auto n = static_cast<std::size_t>(columns);
-        map_.normals_of_row(column, r, {line.data(), n});
-        for (std::size_t i = 0; i < n; ++i) {
-            const int c = column + static_cast<int>(i);
-            if (!(glm::dot(line[i], cap.centre) >= least_cosine) || !surface_.has_sample(c, r)) continue;
-            normals.push_back(line[i]);
-            heights.push_back(static_cast<float>(raster_->at(c, r)));
-        }
+// A row may lie in several views.
+void RasterField::heights_of_row(SampleCursor& cursor, int column, int row, std::span<float> out) const {
+    while (!out.empty()) {
+        const SampleView& view = cursor.at(column, row);
+        const auto n = std::min(out.size(), static_cast<std::size_t>(view.core.column + view.core.columns - column));
+        const std::ptrdiff_t at = view.index(column, row);
+        if (view.shorts)
+            to_metres(raster(), view.shorts + at, out.first(n));
+        else
+            to_metres(raster(), view.floats + at, out.first(n));
+        out = out.subspan(n);
+        column += static_cast<int>(n);
     }
 }
 
-std::vector<SourceInfo> RasterField::sources() const {
-    const glm::dvec2 middle = 0.5 * glm::dvec2(raster_->width - 1, raster_->height - 1);
-    return {{raster_->name, raster_->checksum, raster_->crs, datum_, spacing_at(middle)}};
+void RasterField::samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const {
+    append_samples(*this, cap, normals, heights);
 }
 
-void RasterField::border(std::vector<glm::dvec3>& normals) const {
+std::vector<SourceInfo> RasterField::sources() const {
+    const RasterHeader& r = raster();
+    const glm::dvec2 middle = 0.5 * glm::dvec2(r.width - 1, r.height - 1);
+    return {{r.name, r.checksum, r.crs, datum_, spacing_at(middle), datum_assumed_}};
+}
+
+bool RasterField::may_have_border(int column, int row) const {
+    for (int j = row - 1; j <= row + 1; ++j)
+        for (int i = column - 1; i <= column + 1; ++i) {
+            if (i < 0 || j < 0 || i >= survey_.block_columns || j >= survey_.block_rows) return true;
+            if (survey_.fill_at(i, j) != RasterSurvey::Fill::all) return true;
+        }
+    return false;
+}
+
+void RasterField::add_border_of_row(SampleCursor& cursor, int r, int first_column, int columns,
+                                    std::vector<glm::dvec2>& at) const {
     const bool around = surface_.columns_around() > 0;
     const Poles poles = surface_.poles();
-    const int w = columns_without_repeat(), h = raster_->height;
-    std::vector<glm::dvec2> at;
-    const auto has = [&](int c, int r) {
-        if (r < 0) return poles.first != PoleRow::none;
-        if (r >= h) return poles.last != PoleRow::none;
-        return (around || (c >= 0 && c < w)) && surface_.has_sample(c, r);
+    const int w = survey_.columns, h = raster().height;
+    const auto has = [&](int column, int row) {
+        if (row < 0) return poles.first != PoleRow::none;
+        if (row >= h) return poles.last != PoleRow::none;
+        return (around || (column >= 0 && column < w)) && surface_.has_sample(cursor, column, row);
     };
-    std::size_t stride = 1, sides = 0;
     const auto side = [&](glm::dvec2 middle, glm::dvec2 along) {
-        if (sides++ % stride != 0) return;
         at.push_back(middle - 0.25 * along);
         at.push_back(middle + 0.25 * along);
-        if (at.size() < max_border) return;
-        stride *= 2;  // too many: keep every other one from here on and of those found
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < at.size(); i += 2) at[kept++] = at[i];
-        at.resize(kept);
     };
     constexpr double out = 0.499;
-    for (int r = 0; r < h; ++r)
-        for (int c = 0; c < w; ++c) {
-            if (!surface_.has_sample(c, r)) continue;
-            if (!has(c - 1, r)) side({c - out, r}, {0, 1});
-            if (!has(c + 1, r)) side({c + out, r}, {0, 1});
-            if (!has(c, r - 1)) side({c, r - out}, {1, 0});
-            if (!has(c, r + 1)) side({c, r + out}, {1, 0});
+    for (int c = first_column; c < first_column + columns; ++c) {
+        cursor.at(c, r);
+        if (!has(c, r)) continue;
+        if (!has(c - 1, r)) side({c - out, r}, {0, 1});
+        if (!has(c + 1, r)) side({c + out, r}, {0, 1});
+        if (!has(c, r - 1)) side({c, r - out}, {1, 0});
+        if (!has(c, r + 1)) side({c, r + out}, {1, 0});
+    }
+}
+
+// Row by row of the whole raster, so that the order does not depend on its blocks.
+void RasterField::border(const Cap& cap, std::size_t every, std::vector<glm::dvec3>& normals) const {
+    std::vector<std::pair<int, int>> found;  // row and column of blocks
+    blocks_.visit(cap, [&](int column, int row, double) {
+        if (may_have_border(column, row)) found.emplace_back(row, column);
+        return std::numeric_limits<double>::infinity();
+    });
+    std::sort(found.begin(), found.end());
+    const int size = survey_.block_size;
+    const double most_chord = 2 * std::sin(0.5 * std::min(cap.angle, std::numbers::pi));
+    SampleCursor cursor(*samples_);
+    std::size_t sides = 0;
+    std::vector<glm::dvec2> at;
+    std::vector<glm::dvec3> n;
+    for (auto first = found.begin(), last = first; first != found.end(); first = last) {
+        last = std::find_if(first, found.end(), [&](const auto& f) { return f.first != first->first; });
+        for (int r = first->first * size; r < std::min((first->first + 1) * size, raster().height); ++r) {
+            at.clear();
+            for (auto f = first; f != last; ++f)
+                add_border_of_row(cursor, r, f->second * size, std::min(size, survey_.columns - f->second * size), at);
+            keep_every(every, sides, at);
+            n.resize(at.size());
+            map_.normals_from_samples(at, n);
+            for (const glm::dvec3& p : n)
+                if (glm::distance(p, cap.centre) <= most_chord) normals.push_back(p);
         }
-    const std::size_t first = normals.size();
-    normals.resize(first + at.size());
-    map_.normals_from_samples(at, std::span(normals).subspan(first));
+    }
 }
 
 std::shared_ptr<const RasterField> open_raster_field(const std::string& path, VerticalDatum datum,

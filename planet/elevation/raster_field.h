@@ -4,8 +4,11 @@
 #include <memory>
 
 #include "planet/elevation/elevation_field.h"
+#include "planet/elevation/raster_blocks.h"
 #include "planet/elevation/raster_io.h"
+#include "planet/elevation/raster_samples.h"
 #include "planet/elevation/raster_surface.h"
+#include "planet/elevation/raster_survey.h"
 #include "planet/elevation/sample_map.h"
 
 namespace planet {
@@ -16,51 +19,38 @@ class RasterField : public ElevationField {
   public:
     /// @param datum what the raster's heights are measured from
     RasterField(std::shared_ptr<const Raster> raster, VerticalDatum datum);
+    /// Of any samples and what a survey of them found. No view of the samples may be used after the field is gone.
+    RasterField(std::shared_ptr<const RasterSamples> samples, RasterSurvey survey, VerticalDatum datum,
+                bool datum_assumed = false);
 
-    const Raster& raster() const { return *raster_; }
+    const RasterHeader& raster() const { return samples_->header(); }
 
     VerticalDatum datum() const override { return datum_; }
     void heights(std::span<const glm::dvec3> normals, std::span<float> out) const override;
-    /// In blocks of at most 64 x 64 samples. Where samples are much closer one way than the other (a geographic grid
+    /// In the blocks of a survey: at most 64 x 64 samples, more of rasters beyond 32,768 a side. Where samples are much closer one way than the other (a geographic grid
     /// near a pole) the shorter spacing counts as at least a quarter of the longer one.
     double spacing(const Cap& cap) const override;
     void samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const override;
+    void sample_rows(const Cap& cap, const SampleRowVisitor& visit) const override;
     std::vector<SourceInfo> sources() const override;
-    /// At most about four million: a raster with more has every n-th.
-    void border(std::vector<glm::dvec3>& normals) const override;
+    void border(const Cap& cap, std::size_t every, std::vector<glm::dvec3>& normals) const override;
+    std::size_t border_size() const override { return 2 * survey_.border_sides; }
 
   private:
-    struct Block {
-        glm::dvec3 centre;
-        double angle;    // every sample of the block is within
-        double spacing;  // infinity: nothing but voids
-    };
-    static constexpr int max_block = 64;  // samples a side
-    static constexpr int group_size = 8;  // blocks a side
-
-    int columns_without_repeat() const;
-    void build_blocks();
-    Block make_block(int column, int row, int columns, int rows) const;
     double spacing_at(glm::dvec2 sample) const;
-    Block make_group(int column, int row) const;
-    const Block& block(int column, int row) const {
-        return blocks_[static_cast<std::size_t>(row) * static_cast<std::size_t>(block_columns_) +
-                       static_cast<std::size_t>(column)];
-    }
-    /// Calls visit(column, row, block) for every block that may meet the cap and holds samples closer than visit's last
-    /// answer (at first infinity).
-    template <class Visit>
-    void visit_blocks(const Cap& cap, Visit visit) const;
-    void samples_of_block(int column, int row, const Cap& cap, double least_cosine, std::vector<glm::dvec3>& normals,
-                          std::vector<float>& heights) const;
+    RasterBlocks::Block make_block(int column, int row) const;
+    void heights_of_row(SampleCursor& cursor, int column, int row, std::span<float> out) const;
+    void add_border_of_row(SampleCursor& cursor, int row, int first_column, int columns,
+                           std::vector<glm::dvec2>& at) const;
+    bool may_have_border(int block_column, int block_row) const;
 
-    std::shared_ptr<const Raster> raster_;
+    std::shared_ptr<const RasterSamples> samples_;
+    RasterSurvey survey_;
     VerticalDatum datum_;
+    bool datum_assumed_;
     SampleMap map_;
     RasterSurface surface_;
-    int block_size_ = max_block;
-    int block_columns_ = 0, block_rows_ = 0;
-    std::vector<Block> blocks_, groups_;  // row-major; a group bounds group_size x group_size blocks
+    RasterBlocks blocks_;
 };
 
 /// Reads a file and makes a field of it.

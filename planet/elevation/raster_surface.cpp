@@ -51,49 +51,23 @@ float slope(float before, float here, float after) {
 
 }  // namespace
 
-RasterSurface::RasterSurface(const Raster& raster)
-    : raster_(raster),
+RasterSurface::RasterSurface(const RasterHeader& raster, const RasterSurvey& survey)
+    : width_(raster.width),
+      height_(raster.height),
+      scale_(raster.scale),
+      offset_(raster.offset),
       around_(planet::columns_around(raster)),
       poles_(poles_of(raster)),
-      zero_(static_cast<float>(-raster.offset / raster.scale)) {
-    if (const auto* s = std::get_if<std::vector<std::int16_t>>(&raster.samples))
-        shorts_ = s->data();
-    else
-        floats_ = std::get<std::vector<float>>(raster.samples).data();
-    const Poles reached = poles_;
-    poles_ = {};  // the means are of the rows as they are
-    const float first = reached.first != PoleRow::none ? pole_mean(0) : nan;
-    const float last = reached.last != PoleRow::none ? pole_mean(raster.height - 1) : nan;
-    first_pole_ = first;
-    last_pole_ = last;
-    if (!std::isnan(first)) poles_.first = reached.first;
-    if (!std::isnan(last)) poles_.last = reached.last;
+      zero_(static_cast<float>(-raster.offset / raster.scale)),
+      first_pole_(survey.first_mean),
+      last_pole_(survey.last_mean) {
+    if (std::isnan(first_pole_)) poles_.first = PoleRow::none;
+    if (std::isnan(last_pole_)) poles_.last = PoleRow::none;
 }
 
-float RasterSurface::pole_mean(int row) const {
-    double total = 0;
-    int count = 0;
-    for (int column = 0; column < around_; ++column) {
-        bool water = false;
-        const float v = fetch(column, row, water);
-        if (std::isnan(v)) continue;
-        total += static_cast<double>(v);
-        ++count;
-    }
-    return count > 0 ? static_cast<float>(total / count) : nan;
-}
-
-float RasterSurface::raw(int column, int row) const {
-    const auto i =
-        static_cast<std::size_t>(row) * static_cast<std::size_t>(raster_.width) + static_cast<std::size_t>(column);
-    if (!shorts_) return floats_[i];
-    const std::int16_t s = shorts_[i];
-    return s == void_sample ? nan : s == water_sample ? -std::numeric_limits<float>::infinity() : s;
-}
-
-float RasterSurface::fetch(int column, int row, bool& water) const {
+float RasterSurface::fetch(const SampleCursor& cursor, int column, int row, bool& water) const {
     water = false;
-    const int h = raster_.height;
+    const int h = height_;
     if (row < 0 && poles_.first != PoleRow::none) {
         row = poles_.first == PoleRow::at_row ? -row : -row - 1;
         column += around_ / 2;
@@ -102,8 +76,8 @@ float RasterSurface::fetch(int column, int row, bool& water) const {
         column += around_ / 2;
     }
     if (around_ > 0) column = ((column % around_) + around_) % around_;
-    if (row < 0 || row >= h || column < 0 || column >= raster_.width) return nan;
-    const float v = raw(column, row);
+    if (row < 0 || row >= h || column < 0 || column >= width_) return nan;
+    const float v = cursor.raw(column, row);
     if (std::isinf(v)) {
         water = true;
         return zero_;
@@ -113,10 +87,10 @@ float RasterSurface::fetch(int column, int row, bool& water) const {
     return v;
 }
 
-bool RasterSurface::has_sample(int column, int row) const {
+bool RasterSurface::has_sample(const SampleCursor& cursor, int column, int row) const {
     if (around_ > 0) column = ((column % around_) + around_) % around_;
-    if (row < 0 || row >= raster_.height || column < 0 || column >= raster_.width) return false;
-    return !std::isnan(raw(column, row));
+    if (row < 0 || row >= height_ || column < 0 || column >= width_) return false;
+    return !std::isnan(cursor.raw(column, row));
 }
 
 RasterSurface::Corner RasterSurface::corner(const Neighbourhood& n, int column, int row) const {
@@ -139,13 +113,13 @@ RasterSurface::Corner RasterSurface::corner(const Neighbourhood& n, int column, 
     return out;
 }
 
-float RasterSurface::careful(int column, int row, float s, float t) const {
+float RasterSurface::careful(const SampleCursor& cursor, int column, int row, float s, float t) const {
     Neighbourhood n{};
     for (int j = 0; j < 4; ++j)
         for (int i = 0; i < 4; ++i) {
             const auto r = static_cast<std::size_t>(j), c = static_cast<std::size_t>(i);
             bool water = false;
-            n.height[r][c] = fetch(column - 1 + i, row - 1 + j, water);
+            n.height[r][c] = fetch(cursor, column - 1 + i, row - 1 + j, water);
             n.water[r][c] = water;
         }
     const std::size_t near_c = s < 0.5f ? 1 : 2, near_r = t < 0.5f ? 1 : 2;
@@ -188,51 +162,47 @@ float RasterSurface::careful(int column, int row, float s, float t) const {
 
 float RasterSurface::lead_to_pole(double row, float value) const {
     const bool first = row < 0 && poles_.first == PoleRow::at_edge;
-    const bool last = row > raster_.height - 1 && poles_.last == PoleRow::at_edge;
+    const bool last = row > height_ - 1 && poles_.last == PoleRow::at_edge;
     if (!first && !last) return value;
-    const double rows = first ? row + 0.5 : raster_.height - 0.5 - row;  // to the pole
+    const double rows = first ? row + 0.5 : height_ - 0.5 - row;  // to the pole
     const float d = static_cast<float>(std::clamp(2 * rows, 0.0, 1.0));
     const float pole = first ? first_pole_ : last_pole_;
     return pole + (value - pole) * (d * d * (3 - 2 * d));
 }
 
 template <class Sample>
-float RasterSurface::fast_or_careful(const Sample* samples, glm::dvec2 at) const {
-    const double column = std::floor(at.x), row = std::floor(at.y);
-    const int c = static_cast<int>(column), r = static_cast<int>(row);
-    const float s = static_cast<float>(at.x - column), t = static_cast<float>(at.y - row);
-    const int w = raster_.width;
-    if (c < 1 || r < 1 || c + 2 >= w || r + 2 >= raster_.height || (r == 1 && poles_.first == PoleRow::at_row) ||
-        (r + 3 == raster_.height && poles_.last == PoleRow::at_row))
-        return lead_to_pole(at.y, careful(c, r, s, t));
-    const Sample* p = samples + static_cast<std::ptrdiff_t>(r - 1) * w + (c - 1);
-    const Four r0 = load(p), r1 = load(p + w), r2 = load(p + 2 * static_cast<std::ptrdiff_t>(w)),
-               r3 = load(p + 3 * static_cast<std::ptrdiff_t>(w));
-    if (!plain(r0, r1, r2, r3, Sample{})) return careful(c, r, s, t);
+float RasterSurface::fast_or_careful(const SampleCursor& cursor, const Sample* samples, int c, int r,
+                                     glm::dvec2 at) const {
+    const float s = static_cast<float>(at.x - c), t = static_cast<float>(at.y - r);
+    if (c < 1 || r < 1 || c + 2 >= width_ || r + 2 >= height_ || (r == 1 && poles_.first == PoleRow::at_row) ||
+        (r + 3 == height_ && poles_.last == PoleRow::at_row))
+        return lead_to_pole(at.y, careful(cursor, c, r, s, t));
+    const std::ptrdiff_t w = cursor.view().window.columns;
+    const Sample* p = samples + cursor.view().index(c - 1, r - 1);
+    const Four r0 = load(p), r1 = load(p + w), r2 = load(p + 2 * w), r3 = load(p + 3 * w);
+    if (!plain(r0, r1, r2, r3, Sample{})) return careful(cursor, c, r, s, t);
     const Four y = weights(t);
     return sum(weights(s) * ((y[0] * r0 + y[1] * r1) + (y[2] * r2 + y[3] * r3)));
 }
 
-void RasterSurface::prefetch(glm::dvec2 at) const {
-    if (!(at.x >= 1 && at.y >= 1 && at.x < raster_.width - 2 && at.y < raster_.height - 2)) return;
-    const std::ptrdiff_t w = raster_.width;
-    const std::ptrdiff_t first = (static_cast<std::ptrdiff_t>(at.y) - 1) * w + static_cast<std::ptrdiff_t>(at.x) - 1;
-    for (std::ptrdiff_t row = 0; row < 4; ++row) {
-        const std::ptrdiff_t i = first + row * w;
-        if (shorts_)
-            __builtin_prefetch(shorts_ + i);
-        else
-            __builtin_prefetch(floats_ + i);
-    }
+bool RasterSurface::is_inside(glm::dvec2 at) const {
+    constexpr double rim = 0.5 + 1e-9;  // a position at the very edge counts as inside whatever its rounding
+    const double beyond = around_ > 0 ? width_ : rim;
+    return at.y >= -rim && at.y <= height_ - 1 + rim && at.x >= -beyond && at.x <= width_ - 1 + beyond;
 }
 
-float RasterSurface::operator()(glm::dvec2 at) const {
-    constexpr double rim = 0.5 + 1e-9;  // a position at the very edge counts as inside whatever its rounding
-    const double slack = around_ > 0 ? raster_.width : rim;
-    if (!(at.y >= -rim && at.y <= raster_.height - 1 + rim && at.x >= -slack && at.x <= raster_.width - 1 + slack))
-        return nan;
-    const float v = shorts_ ? fast_or_careful(shorts_, at) : fast_or_careful(floats_, at);
-    return static_cast<float>(raster_.offset + raster_.scale * static_cast<double>(v));
+void RasterSurface::heights(SampleCursor& cursor, std::span<const glm::dvec2> at, std::span<float> out) const {
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        if (!is_inside(at[i])) {
+            out[i] = nan;
+            continue;
+        }
+        const int c = static_cast<int>(std::floor(at[i].x)), r = static_cast<int>(std::floor(at[i].y));
+        const SampleView& view = cursor.at(std::clamp(c, 0, width_ - 1), std::clamp(r, 0, height_ - 1));
+        const float v = view.shorts ? fast_or_careful(cursor, view.shorts, c, r, at[i])
+                                    : fast_or_careful(cursor, view.floats, c, r, at[i]);
+        out[i] = static_cast<float>(offset_ + scale_ * static_cast<double>(v));
+    }
 }
 
 }  // namespace planet

@@ -24,26 +24,24 @@
 
 #include <array>
 #include <glm/glm.hpp>
+#include <span>
 
-#include "planet/elevation/raster.h"
+#include "planet/elevation/raster_samples.h"
+#include "planet/elevation/raster_survey.h"
 
 namespace planet {
 
 class RasterSurface {
   public:
-    /// The raster must outlive it.
-    explicit RasterSurface(const Raster& raster);
+    /// @param raster  of what the survey was made
+    RasterSurface(const RasterHeader& raster, const RasterSurvey& survey);
 
-    /// Height in metres at a column and row (whole at pixel centres); NaN where void, outside or NaN. Columns of a
+    /// Heights in metres at columns and rows (whole at pixel centres); NaN where void, outside or NaN. Columns of a
     /// raster that goes around may lie up to a turn outside.
-    float operator()(glm::dvec2 sample) const;
-
-    /// Asks memory for the samples around a position, some hundred positions before they are used: scattered ones then
-    /// wait for many cache lines at once.
-    void prefetch(glm::dvec2 sample) const;
+    void heights(SampleCursor& cursor, std::span<const glm::dvec2> samples, std::span<float> out) const;
 
     /// Whether a pixel holds a height (or water); columns wrap, rows beyond a pole or the raster do not.
-    bool has_sample(int column, int row) const;
+    bool has_sample(const SampleCursor& cursor, int column, int row) const;
     int columns_around() const { return around_; }
     Poles poles() const { return poles_; }
 
@@ -57,19 +55,17 @@ class RasterSurface {
         float f, fx, fy, fxy;
     };
 
-    float raw(int column, int row) const;
-    float fetch(int column, int row, bool& water) const;
+    bool is_inside(glm::dvec2 sample) const;
+    float fetch(const SampleCursor& cursor, int column, int row, bool& water) const;
     Corner corner(const Neighbourhood& n, int column, int row) const;
-    float careful(int column, int row, float s, float t) const;
-    float pole_mean(int row) const;
+    float careful(const SampleCursor& cursor, int column, int row, float s, float t) const;
     float lead_to_pole(double row, float value) const;
 
     template <class Sample>
-    float fast_or_careful(const Sample* samples, glm::dvec2 sample) const;
+    float fast_or_careful(const SampleCursor& cursor, const Sample* samples, int column, int row, glm::dvec2 at) const;
 
-    const Raster& raster_;
-    const std::int16_t* shorts_ = nullptr;
-    const float* floats_ = nullptr;
+    int width_, height_;
+    double scale_, offset_;
     int around_;
     Poles poles_;
     float zero_;  // height 0 in samples' units: what water is worth

@@ -88,7 +88,7 @@ void angles_from_normals(std::span<const glm::dvec3> normals, std::span<double> 
     }
 }
 
-SampleMap::SampleMap(const Raster& raster)
+SampleMap::SampleMap(const RasterHeader& raster)
     : size_(raster.width, raster.height), grid_(raster.grid), transform_(raster.transform) {
     assert(!raster.plain);
     middle_ = 0.5 * (size_ - 1.0);
@@ -101,6 +101,10 @@ SampleMap::SampleMap(const Raster& raster)
     for (int column = 0; column < raster.width; ++column) {
         const double longitude = grid_.crs_from_sample({column, 0}).x * degrees;
         meridians_.emplace_back(std::cos(longitude), std::sin(longitude));
+    }
+    for (int row = 0; row < raster.height; ++row) {
+        const double latitude = std::clamp(grid_.crs_from_sample({0, row}).y, -90.0, 90.0) * degrees;
+        parallels_.emplace_back(std::cos(latitude), std::sin(latitude));
     }
 }
 
@@ -147,10 +151,36 @@ void SampleMap::normals_of_row(int first_column, int row, std::span<glm::dvec3> 
             samples.emplace_back(first_column + static_cast<double>(i), row);
         return normals_from_samples(samples, normals);
     }
-    const double latitude = std::clamp(grid_.crs_from_sample({0, row}).y, -90.0, 90.0) * degrees;
-    const double c = std::cos(latitude), s = std::sin(latitude);
+    const double c = parallels_[static_cast<std::size_t>(row)].x, s = parallels_[static_cast<std::size_t>(row)].y;
     const glm::dvec2* const meridian = meridians_.data() + first_column;
     for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = {c * meridian[i].x, c * meridian[i].y, s};
+}
+
+SampleMap::RowsInCap::RowsInCap(const SampleMap& map, int first_column, int columns, const glm::dvec3& centre,
+                                double least_cosine)
+    : map_(map),
+      columns_(columns),
+      towards_pole_(centre.z),
+      least_cosine_(least_cosine - 1e-14),
+      most_along_(-std::numeric_limits<double>::infinity()) {
+    if (map.meridians_.empty()) return;
+    along_.reserve(static_cast<std::size_t>(columns));
+    for (int i = 0; i < columns; ++i) {
+        const glm::dvec2 meridian = map.meridians_[static_cast<std::size_t>(first_column + i)];
+        along_.push_back(meridian.x * centre.x + meridian.y * centre.y);
+        most_along_ = std::max(most_along_, along_.back());
+    }
+}
+
+std::pair<int, int> SampleMap::RowsInCap::find(int row) const {
+    if (along_.empty()) return {0, columns_};
+    const glm::dvec2 parallel = map_.parallels_[static_cast<std::size_t>(row)];
+    const double rest = least_cosine_ - parallel.y * towards_pole_;
+    if (parallel.x * most_along_ < rest) return {0, 0};
+    int first = 0, last = columns_;
+    while (first < last && parallel.x * along_[static_cast<std::size_t>(first)] < rest) ++first;
+    while (last > first && parallel.x * along_[static_cast<std::size_t>(last - 1)] < rest) --last;
+    return {first, last};
 }
 
 void SampleMap::project_exactly(std::span<const glm::dvec3> normals, std::span<glm::dvec3> samples) const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "planet/elevation/patch_map.h"
@@ -16,7 +17,7 @@ namespace planet {
 /// degrees; others through their CRS, to 1/256 of a sample (patch_map.h). Safe from several threads.
 class SampleMap {
   public:
-    explicit SampleMap(const Raster& raster);
+    explicit SampleMap(const RasterHeader& raster);
     SampleMap(const SampleMap&) = delete;
     SampleMap& operator=(const SampleMap&) = delete;
 
@@ -32,6 +33,22 @@ class SampleMap {
     /// geographic and upright.
     void normals_of_row(int first_column, int row, std::span<glm::dvec3> normals) const;
 
+    /// For whole columns of rows that follow each other: which part of a row may be in a cap. Nothing outside of
+    /// [first, last) of what find() gives is in it.
+    class RowsInCap {
+      public:
+        RowsInCap(const SampleMap& map, int first_column, int columns, const glm::dvec3& centre, double least_cosine);
+        /// Counted from the first column.
+        std::pair<int, int> find(int row) const;
+
+      private:
+        const SampleMap& map_;
+        int columns_;
+        double towards_pole_, least_cosine_;
+        std::vector<double> along_;  // by column: its meridian's part of the cosine; empty: not upright
+        double most_along_;
+    };
+
   private:
     void from_longitude_latitude(std::span<const glm::dvec3> normals, std::span<glm::dvec2> samples) const;
     void project_exactly(std::span<const glm::dvec3> normals, std::span<glm::dvec3> samples) const;
@@ -44,6 +61,7 @@ class SampleMap {
     // sample = middle + by_x * (x - x_middle) + by_y * (y - y_middle)
     glm::dvec2 middle_, crs_middle_, by_x_, by_y_;
     std::vector<glm::dvec2> meridians_;  // (cos, sin) of each column's longitude; upright geographic rasters
+    std::vector<glm::dvec2> parallels_;  // and of each row's latitude
     // Projected rasters: directions by the faces of a cube around the planet, +x -x +y -y +z -z.
     std::array<std::optional<PatchMap>, 6> from_cube_;
     std::optional<PatchMap> to_normal_;

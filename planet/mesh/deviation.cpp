@@ -159,4 +159,14 @@ double corner_distance(const TileLattice& lattice, unsigned i) {
     return std::sqrt(square);
 }
 
+void corner_radii(const TileLattice& lattice, std::span<const std::uint8_t> exists, bool inner,
+                  std::span<const std::uint8_t> lacks_below, std::span<float> radius) {
+    const unsigned last = 1u << (lattice.depth() - 1);
+    radius[0] = 0;
+    for (unsigned i = 1; i < 2 * last; ++i) {
+        const bool lacks = i < last ? !(exists[2 * i] && exists[2 * i + 1]) : !inner || lacks_below[i - last];
+        radius[i] = exists[i] && lacks ? certified_radius(corner_distance(lattice, i)) : 0.0f;
+    }
+}
+
 }  // namespace planet

@@ -113,8 +113,14 @@ class TileHull {
 /// Largest distance from the rounded split vertex of cell i to the true corners of the cell, metres.
 double corner_distance(const TileLattice& lattice, unsigned i);
 
-/// The records that a tile without tiles below it starts from: own_deviation(), and the radius of every existing cell
-/// that lacks a child diamond: corner_distance(), rounded up; else 0. @param exists, deviation, radius by local index
+/// Where radii of a tile start: corner_distance(), rounded up, of the existing cells that lack a child diamond; else 0.
+/// @param exists, radius by local index @param inner whether the tile has tiles below it
+/// @param lacks_below by position at the level below the last: whether the child diamonds in other tiles are incomplete
+void corner_radii(const TileLattice& lattice, std::span<const std::uint8_t> exists, bool inner,
+                  std::span<const std::uint8_t> lacks_below, std::span<float> radius);
+
+/// own_deviation() and corner_radii() of a tile without tiles below it, faster than one after the other.
+/// @param exists, deviation, radius by local index
 void measure_leaf(const TileLattice& lattice, std::span<const std::uint8_t> exists, std::span<float> deviation,
                   std::span<float> radius);
 

@@ -24,6 +24,11 @@ class GrowingArray {
         data_ = std::move(grown);
         capacity_ = capacity;
     }
+    /// Elements that are new are garbage.
+    void resize(std::size_t size) {
+        if (size > size_) reserve_more(size - size_);
+        size_ = size;
+    }
     /// Appends; room must have been made.
     void push(const T& value) { data_[size_++] = value; }
     void pop() { --size_; }
@@ -34,6 +39,7 @@ class GrowingArray {
 
     const T& back() const { return data_[size_ - 1]; }
     const T& operator[](std::size_t i) const { return data_[i]; }
+    T* data() { return data_.get(); }
     const T* data() const { return data_.get(); }
     std::size_t size() const { return size_; }
     std::span<const T> span() const { return {data_.get(), size_}; }

@@ -1,8 +1,9 @@
 #include "planet/mesh/placed_tile.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "planet/mesh/deviation.h"
+#include "planet/mesh/exaggeration.h"
 #include "planet/octahedron/octahedron_map.h"
 
 namespace planet {
@@ -19,81 +20,149 @@ std::vector<glm::dvec3> tile_normals(LocationCode root, int depth) {
 }
 
 PlacedTile::PlacedTile(const Tile& tile, const Placement& placement)
-    : root(tile.root),
-      depth(tile.depth),
-      split(std::size_t{1} << tile.depth),
-      height(tile.height),
-      damaged(tile.damaged) {
-    if (tile.child_exists.any()) {
-        children_ = std::make_unique<std::atomic<const PlacedTile*>[]>(tile_cells);
-        for (unsigned k = 0; k < tile_cells; ++k)
-            if (!tile.child_exists[k]) children_[k] = this;
+    : root(tile.root), depth(tile.depth), height(tile.height), damaged(tile.damaged), stored_(tile.height.size()) {
+    for (const GeoidUndulation N : tile.undulation) undulation_.push_back(static_cast<float>(N.m));
+    for (std::size_t i = 1; i < tile.deviation.size(); ++i)
+        stored_[tile_layout().split_vertex[i]] = {tile.deviation[i], tile.radius[i]};
+    if (tile.child_exists.any()) note_children(tile);
+    place(placement);
+}
+
+void PlacedTile::note_children(const Tile& tile) {
+    ChildBounds& c = child_bound;
+    std::size_t children = 0;
+    for (std::size_t word = 0; word < c.exists_.size(); ++word) {
+        c.rank_[word] = static_cast<std::uint16_t>(children);
+        for (std::size_t bit = 0; bit < 64; ++bit)
+            c.exists_[word] |= std::uint64_t{tile.child_exists[64 * word + bit]} << bit;
+        children += static_cast<std::size_t>(std::popcount(c.exists_[word]));
     }
-    const TileLayout& layout = tile_layout();
+    for (unsigned i = 127; i >= 1; --i) {
+        const bool any = i >= 64 ? c.exists_[i - 64] != 0 : c.has_below(2 * i) || c.has_below(2 * i + 1);
+        c.any_[i >> 6] |= std::uint64_t{any} << (i & 63);
+    }
+    c.below_ = std::vector<ChildBounds::Below>(children);
+    for (unsigned k = 0; k < tile_cells; ++k)
+        if (c.has(k)) c.below_[c.index(k)].stored = {tile.child_deviation[k], tile.child_radius[k]};
+}
+
+PlacedTile::PlacedTile(const PlacedTile& other, const Placement& placement)
+    : root(other.root),
+      depth(other.depth),
+      height(other.height),
+      damaged(other.damaged),
+      undulation_(other.undulation_),
+      stored_(other.height.size()) {
+    child_bound.exists_ = other.child_bound.exists_;
+    child_bound.rank_ = other.child_bound.rank_;
+    child_bound.any_ = other.child_bound.any_;
+    child_bound.below_ = std::vector<ChildBounds::Below>(other.child_bound.below_.size());
+    for (std::size_t v = 3; v < stored_.size(); ++v) stored_[v] = other.stored(v);
+    for (std::size_t k = 0; k < child_bound.below_.size(); ++k)
+        child_bound.below_[k].stored = other.child_bound.below_[k].stored;
+    place(placement);
+    for (std::size_t v = 3; v < height.size(); ++v) {
+        float& deviation = split.by_vertex_[v].deviation;
+        deviation = std::copysign(deviation, other.split.by_vertex_[v].deviation);
+    }
+}
+
+PlacedTile::StoredRecord PlacedTile::stored(std::size_t vertex) const {
+    if (!stored_.empty()) return stored_[vertex];
+    const SplitRecord& s = split.by_vertex_[vertex];
+    return {std::abs(s.deviation), s.radius};
+}
+
+void PlacedTile::place(const Placement& placement) {
     const std::vector<glm::dvec3> normals = tile_normals(root, depth);
     std::vector<glm::vec3> rounded(normals.size());
     position.resize(normals.size());
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        const GeoidUndulation N = tile.undulation.empty() ? GeoidUndulation{} : tile.undulation[v];
-        const glm::dvec3 p = placement.ecef(normals[v], static_cast<double>(tile.height[v]), N);
+        const GeoidUndulation N{undulation_.empty() ? 0.0 : static_cast<double>(undulation_[v])};
+        const glm::dvec3 p = placement.ecef(normals[v], static_cast<double>(height[v]), N);
         position[v] = grid_from_ecef(p);
         rounded[v] = glm::vec3(p);
     }
-    // Exaggeration e >= 1 stretches distances and deviations by at most e (the part that is curvature is not
-    // stretched), so e * radius and e * deviation keep the test nested. The stored radii hold for split vertices
-    // rounded to float at e = 1; at another e the roundings differ by up to 0.9 (1 + e) m a level, which the last term
-    // covers.
-    const double e = std::max(1.0, placement.exaggeration);
-    const double slack = placement.exaggeration == 1.0 ? 0.0 : 2.0 * (1.0 + e);
-    for (std::size_t i = 1; i < split.size(); ++i) {
-        const glm::vec3& m = rounded[layout.split_vertex[i]];
-        const int level = root.bisection_level() + static_cast<int>(std::bit_width(i)) - 1;
-        const double r = e * static_cast<double>(tile.radius[i]) + slack * (max_bisection_level + 1 - level);
-        split[i] = {m.x, m.y, m.z, static_cast<float>(e * static_cast<double>(tile.deviation[i])),
-                    std::nextafter(static_cast<float>(r), std::numeric_limits<float>::max())};
-        if (placement.exaggeration == 1.0) split[i].radius = tile.radius[i];
+    place_records(rounded, placement);
+    if (!child_bound.empty()) bound_children(rounded, placement);
+    if (placement.exaggeration == 1.0) stored_ = {};
+}
+
+void PlacedTile::place_records(const std::vector<glm::vec3>& rounded, const Placement& placement) {
+    const TileLayout& layout = tile_layout();
+    const Exaggeration exaggeration(placement.ellipsoid, placement.exaggeration);
+    split.by_vertex_.assign(rounded.size(), SplitRecord{});
+    for (int k = 0; k < depth; ++k) {
+        const int level = root.bisection_level() + k;
+        const auto first = layout.vertex_count[static_cast<std::size_t>(k)],
+                   end = layout.vertex_count[static_cast<std::size_t>(k) + 1];
+        for (std::size_t v = first; v < end; ++v) {
+            const glm::vec3& m = rounded[v];
+            const StoredRecord s = stored_[v];
+            SplitRecord& record = split.by_vertex_[v];
+            record = {m.x, m.y, m.z, s.deviation, s.radius};
+            if (placement.exaggeration == 1.0 || !(s.deviation > 0)) continue;
+            record.deviation =
+                next_up(static_cast<float>(exaggeration.deviation(static_cast<double>(s.deviation), level)));
+            record.radius = next_up(static_cast<float>(exaggeration.radius(static_cast<double>(s.radius), level)));
+        }
     }
-    if (children_) bound_children(tile, rounded, placement.exaggeration);
 }
 
 // The split vertex of a root below is not known here, but it lies near the middle of the chord of its split side: the
 // plane of its cell meets its normal there, to second order, and the certified deviation bounds how far it is from that
-// plane. 2 % of the side covers the second order and the roundings of an exaggerated record (see the constructor).
-void PlacedTile::bound_children(const Tile& tile, const std::vector<glm::vec3>& rounded, double exaggeration) {
+// plane. 2 % of the side covers the second order and the roundings of an exaggerated record (see Exaggeration).
+void PlacedTile::bound_children(const std::vector<glm::vec3>& rounded, const Placement& placement) {
     const TileLayout& layout = tile_layout();
-    const double e = std::max(1.0, exaggeration);
-    const double rounding = 2.0 * (1.0 + e) * (max_bisection_level + 1);
-    child_bound.assign(tile_cells, SplitRecord{0, 0, 0, 0, 0});
-    for (std::size_t k = 0; k < tile_cells; ++k) {
-        if (!tile.child_exists[k] || !(tile.child_deviation[k] > 0)) continue;
+    const Exaggeration exaggeration(placement.ellipsoid, placement.exaggeration);
+    const double rounding = 2.0 * (1.0 + std::max(1.0, placement.exaggeration)) * (max_bisection_level + 1);
+    const int level = root.bisection_level() + tile_levels;
+    for (unsigned k = 0; k < tile_cells; ++k) {
+        if (!child_bound.has(k)) continue;
+        ChildBounds::Below& below = child_bound.below_[child_bound.index(k)];
+        below.bound = {};
+        if (!(below.stored.deviation > 0)) continue;
         const auto& corner = layout.corners[tile_cells + k];
         const glm::vec3 &a = rounded[corner[0]], &b = rounded[corner[1]];
         const glm::vec3 middle = 0.5f * (a + b);
-        const double deviation = e * static_cast<double>(tile.child_deviation[k]);
-        const double radius = e * static_cast<double>(tile.child_radius[k]) + deviation +
+        const double deviation = exaggeration.deviation(static_cast<double>(below.stored.deviation), level);
+        const double radius = exaggeration.radius(static_cast<double>(below.stored.radius), level) + deviation +
                               0.02 * static_cast<double>(glm::distance(a, b)) + rounding;
-        child_bound[k] = {middle.x, middle.y, middle.z, static_cast<float>(deviation * 1.0001),
-                          static_cast<float>(radius * 1.0001)};
+        below.bound = {middle.x, middle.y, middle.z, static_cast<float>(deviation * 1.0001),
+                       static_cast<float>(radius * 1.0001)};
     }
 }
 
-bool PlacedTile::has_child_below(unsigned i) const {
-    if (!children_) return false;
-    const int below = tile_levels + 1 - static_cast<int>(std::bit_width(i));
-    const unsigned first = (i << below) - tile_cells, end = ((i + 1) << below) - tile_cells;
-    for (unsigned k = first; k < end; ++k)
-        if (children_[k].load(std::memory_order_relaxed) != this) return true;
-    return false;
+void PlacedTile::close() {
+    for (SplitRecord& s : split.by_vertex_) s.deviation = -std::abs(s.deviation);
 }
 
-const PlacedTile* PlacedTile::child(const TileSource& source, unsigned k) const {
-    if (!children_) return nullptr;
-    const PlacedTile* found = children_[k].load(std::memory_order_acquire);
-    if (found == nullptr) {
-        found = source.tile(LocationCode(root.bits() << tile_levels | k));
-        children_[k].store(found ? found : this, std::memory_order_release);
+const PlacedTile* PlacedTile::child_at(const TileSource& source, unsigned k) const {
+    const ChildBounds::Below& below = child_bound.below_[child_bound.index(k)];
+    if (below.known.load(std::memory_order_acquire)) return below.tile.load(std::memory_order_relaxed);
+    const PlacedTile* tile = source.tile(LocationCode(root.bits() << tile_levels | k));
+    below.tile.store(tile, std::memory_order_relaxed);
+    below.known.store(true, std::memory_order_release);
+    return tile;
+}
+
+void PlacedTile::set_child(unsigned k, const PlacedTile* tile) {
+    const ChildBounds::Below& below = child_bound.below_[child_bound.index(k)];
+    below.tile.store(tile, std::memory_order_relaxed);
+    below.known.store(true, std::memory_order_release);
+}
+
+void PlacedTile::set_no_children() {
+    for (const ChildBounds::Below& below : child_bound.below_) {
+        below.tile.store(nullptr, std::memory_order_relaxed);
+        below.known.store(true, std::memory_order_release);
     }
-    return found == this ? nullptr : found;
+}
+
+std::size_t PlacedTile::bytes() const {
+    return sizeof *this + split.by_vertex_.size() * sizeof(SplitRecord) + position.size() * sizeof(GridPosition) +
+           (height.size() + undulation_.size()) * sizeof(float) + stored_.size() * sizeof(StoredRecord) +
+           child_bound.below_.size() * sizeof(ChildBounds::Below);
 }
 
 }  // namespace planet

@@ -17,23 +17,42 @@ class Walk {
     Walk(const TileSource& tiles, const Test& test, Sink& sink) : tiles_(tiles), test_(test), sink_(sink) {}
 
     void cell(const PlacedTile& t, unsigned i, unsigned state) {
-        if (i >> t.depth) {
+        if (i >> t.depth)
             below(t, i, state);
-        } else if (test_(t.split[i])) {
-            cell(t, 2 * i, strip_child_states[state][0]);
-            cell(t, 2 * i + 1, strip_child_states[state][1]);
-        } else {
+        else if (test_(t.split[i]))
+            children(t, i, state);
+        else
             sink_.leaf(t, i, state);
-        }
     }
 
   private:
+    // Both children are tested before either is walked: the tests overlap.
+    void children(const PlacedTile& t, unsigned i, unsigned state) {
+        const unsigned first = 2 * i, second = first + 1;
+        const auto [first_state, second_state] = strip_child_states[state];
+        if (first >> t.depth) {
+            below(t, first, first_state);
+            below(t, second, second_state);
+            return;
+        }
+        const bool first_split = test_(t.split[first]), second_split = test_(t.split[second]);
+        if (first_split)
+            children(t, first, first_state);
+        else
+            sink_.leaf(t, first, first_state);
+        if (second_split)
+            children(t, second, second_state);
+        else
+            sink_.leaf(t, second, second_state);
+    }
+
+    // Where the tile ends: a leaf, unless a tile below goes on.
     void below(const PlacedTile& t, unsigned i, unsigned state) {
         if (t.depth == tile_levels) {
             const PlacedTile* child = t.child(tiles_, i - tile_cells, test_);
             if (child && test_(child->split[1])) {
                 sink_.tile(*child);
-                cell(*child, 1, state);
+                children(*child, 1, state);
                 sink_.tile(t);
                 return;
             }

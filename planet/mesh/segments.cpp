@@ -1,260 +1,332 @@
 #include "planet/mesh/segments.h"
 
 #include <algorithm>
-#include <cmath>
+#include <atomic>
+#include <cstring>
+#include <limits>
 
-#include "planet/mesh/refine.h"
-#include "planet/octahedron/cell_metrics.h"
 #include "planet/parallel.h"
 
 namespace planet {
 
 namespace {
 
-constexpr std::int64_t one = 32768;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Root {
-    const PlacedTile* tile;
-    unsigned local;
-    double distance;
-};
-
-/// Collects the segment roots in view, in Sierpinski order.
-class RootCollector {
-  public:
-    RootCollector(const TileSource& tiles, const SegmentView& view, std::vector<Root>& roots)
-        : tiles_(tiles), view_(view), roots_(roots) {}
-
-    void cell(const PlacedTile& t, unsigned i) {
-        if (i >> t.depth) {
-            // A leaf of this tile, unless a child tile goes on. Its parent was not hidden: draw it.
-            const PlacedTile* child = t.depth == tile_levels ? t.child(tiles_, i - tile_cells, view_.test) : nullptr;
-            if (child)
-                cell(*child, 1);
-            else
-                roots_.push_back({&t, i, distance_to(t.split[i >> 1], radius_of(t, i >> 1))});
-            return;
-        }
-        const SplitRecord& s = t.split[i];
-        const glm::dvec3 m(s.x, s.y, s.z);
-        const double radius = radius_of(t, i);
-        if (view_.culling.hidden(m, radius)) return;
-        const double leg = cell_metrics(code_of(t, i).bisection_level()).split_max * view_.radius_m / std::sqrt(2.0);
-        const double reach = glm::distance(m, view_.test.eye) - leg;
-        if (!view_.test(s) || leg < view_.segment_angle * reach) {
-            roots_.push_back({&t, i, distance_to(s, radius)});
-            return;
-        }
-        cell(t, 2 * i);
-        cell(t, 2 * i + 1);
-    }
-
-  private:
-    // Everything in a cell is within this of its split vertex. A diamond that does not exist has no radius: its cells
-    // are flat, and their corners are the farthest.
-    double radius_of(const PlacedTile& t, unsigned i) const {
-        const SplitRecord& s = t.split[i];
-        if (s.deviation > 0) return static_cast<double>(s.radius);
-        double reach = 0;
-        for (const std::uint16_t corner : tile_layout().corners[i])
-            reach = std::max(reach, glm::distance(glm::dvec3(s.x, s.y, s.z), ecef_from_grid(t.position[corner])));
-        return reach;
-    }
-    double distance_to(const SplitRecord& s, double radius) const {
-        return std::max(0.0, glm::distance(glm::dvec3(s.x, s.y, s.z), view_.test.eye) - radius);
-    }
-
-    const TileSource& tiles_;
-    const SegmentView& view_;
-    std::vector<Root>& roots_;
-};
-
-/// A tile's lattice in the frame of a patch: u, v of its corners left, right, apex.
-struct Frame {
-    LocationCode tile;
-    std::int64_t u[3], v[3];
-
-    void at(int i, int j, std::int64_t& pu, std::int64_t& pv) const {
-        pu = u[2] + ((u[0] - u[2]) * i + (u[1] - u[2]) * j) / 64;
-        pv = v[2] + ((v[0] - v[2]) * i + (v[1] - v[2]) * j) / 64;
-    }
-};
-
-/// The frame of a tile such that the apex, left and right of cell `half` are (0,0), (1,0), (0,1); or of the patch's far
-/// half, where they are (1,1), (0,1), (1,0). One of the two cells contains the other.
-Frame frame_of_tile(LocationCode tile, LocationCode half, bool far_half) {
-    const TileLayout& layout = tile_layout();
-    Frame f{.tile = tile, .u = {one, 0, 0}, .v = {0, one, 0}};
-    const int below = half.bisection_level() - tile.bisection_level();
-    if (below < 0) {  // from the half down to the tile: corners left, right, apex of each child
-        for (int i = -below - 1; i >= 0; --i)
-            for (std::int64_t* p : {f.u, f.v}) {
-                const std::int64_t m = (p[0] + p[1]) / 2;
-                p[tile.bits() >> i & 1 ? 0 : 1] = p[2];
-                p[2] = m;
-            }
-    } else {
-        const auto local = static_cast<std::size_t>((half.bits() ^ tile.bits() << below) | std::uint64_t{1} << below);
-        const auto point = [&](std::size_t k) {
-            const auto& p = layout.lattice[layout.corners[local][k]];
-            return glm::ivec2(p[0], p[1]);
-        };
-        const glm::ivec2 left = point(0) - point(2), right = point(1) - point(2), apex = point(2);
-        const int leg2 = left.x * left.x + left.y * left.y;  // the legs are equal and at right angles
-        const glm::ivec2 tile_corners[3] = {{64, 0}, {0, 64}, {0, 0}};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const glm::ivec2 p = tile_corners[k] - apex;
-            f.u[k] = one * (p.x * left.x + p.y * left.y) / leg2;
-            f.v[k] = one * (p.x * right.x + p.y * right.y) / leg2;
-        }
-    }
-    if (far_half)
-        for (std::size_t k = 0; k < 3; ++k) {
-            f.u[k] = one - f.u[k];
-            f.v[k] = one - f.v[k];
-        }
-    return f;
+/// Finds a cell that is split in a mesh.
+PlacedCell find_split_cell(const TileSource& tiles, LocationCode cell) {
+    const int below = cell.bisection_level() % tile_levels;
+    const PlacedTile* tile = tiles.tile(cell.ancestor(cell.bisection_level() - below));
+    assert(tile != nullptr);
+    return {tile, static_cast<unsigned>(cell.bits() & ((1u << below) - 1)) | 1u << below};
 }
 
-/// Builds segments one after the other into storage of its own.
-class SegmentBuilder {
-  public:
-    SegmentBuilder(const TileSource& tiles, const SegmentView& view) : tiles_(tiles), view_(view) {}
-
-    void build(const Root& root) {
-        const LocationCode code = code_of(*root.tile, root.local);
-        const LocationCode half = code.ancestor(std::min(code.bisection_level(), view_.finest_patch_level));
-        const LocationCode patch = diamond(half);
-        const auto first_index = static_cast<std::uint32_t>(strip_.indices().size());
-        first_vertex_ = vertices.size();
-        const auto first_leaf = static_cast<std::uint32_t>(leaf_levels.size());
-        strip_.end();
-        frames_.assign(1, frame_of_tile(root.tile->root, half, patch != half));
-        room();
-        Walk walk(tiles_, view_.test, *this);
-        walk.cell(*root.tile, root.local, strip_state_of_segment(code));
-        const int tile_level = root.tile->root.bisection_level();
-        segments.push_back(
-            {.root = code,
-             .patch = patch,
-             .distance_m = root.distance,
-             .first_vertex = static_cast<std::uint32_t>(first_vertex_),
-             .first_index = first_index,
-             .index_count = static_cast<std::uint32_t>(strip_.indices().size()) - first_index,
-             .leaves = static_cast<std::uint32_t>(leaf_levels.size()) - first_leaf,
-             .first_leaf = first_leaf,
-             .detailed = tile_level >= view_.detail_level ||
-                         (tile_level + tile_levels >= view_.detail_level && root.tile->has_child_below(root.local))});
+/// Sorts ranges and joins those that touch.
+void join(std::vector<Range>& ranges) {
+    std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
+    std::size_t kept = 0;
+    for (const Range& r : ranges) {
+        if (kept > 0 && ranges[kept - 1].first + ranges[kept - 1].count == r.first)
+            ranges[kept - 1].count += r.count;
+        else
+            ranges[kept++] = r;
     }
+    ranges.resize(kept);
+}
 
-    void tile(const PlacedTile& t) {
-        room();
-        if (frames_.size() > 1 && frames_[frames_.size() - 2].tile == t.root) {
-            frames_.pop_back();
-            return;
-        }
-        const Frame& above = frames_.back();
-        const unsigned local =
-            static_cast<unsigned>(t.root.bits() - (above.tile.bits() << tile_levels)) | unsigned{tile_cells};
-        Frame f{.tile = t.root, .u = {}, .v = {}};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto& p = layout_.lattice[layout_.corners[local][k]];
-            above.at(p[0], p[1], f.u[k], f.v[k]);
-        }
-        frames_.push_back(f);
-        ++tile_visits;
-        damaged = damaged || t.damaged;
-    }
-
-    void leaf(const PlacedTile& t, unsigned i, unsigned state) {
-        strip_.leaf(state, [&](std::size_t corner) { return add(t, layout_.corners[i][corner]); });
-        leaf_levels.push_back(static_cast<std::uint8_t>(code_of(t, i).bisection_level()));
-        if (!(i >> t.depth)) certify(t.split[i]);
-    }
-
-    std::vector<Segment> segments;
-    GrowingArray<SegmentVertex> vertices;
-    std::vector<std::uint8_t> leaf_levels;
-    std::size_t tile_visits = 0;
-    bool damaged = false;
-    double ratio_max = 0, deviation_max = 0;
-
-    std::span<const std::uint32_t> indices() const { return strip_.indices().span(); }
-
-  private:
-    void room() {
-        strip_.reserve(tile_cells + 1);
-        vertices.reserve_more(tile_cells + 3);
-    }
-
-    std::uint32_t add(const PlacedTile& t, std::uint16_t vertex) {
-        std::int64_t u = 0, v = 0;
-        frames_.back().at(layout_.lattice[vertex][0], layout_.lattice[vertex][1], u, v);
-        vertices.push(
-            {t.position[vertex], static_cast<std::uint16_t>(u), static_cast<std::uint16_t>(v), t.height[vertex]});
-        return static_cast<std::uint32_t>(vertices.size() - 1 - first_vertex_);
-    }
-
-    // An unsplit diamond: its deviation over what the test allows at the nearest point below it.
-    void certify(const SplitRecord& s) {
-        if (!(s.deviation > 0)) return;
-        const double reach = glm::distance(glm::dvec3(s.x, s.y, s.z), view_.test.eye) - static_cast<double>(s.radius);
-        deviation_max = std::max(deviation_max, static_cast<double>(s.deviation));
-        ratio_max = std::max(ratio_max, view_.test.K * static_cast<double>(s.deviation) / reach);
-    }
-
-    const TileSource& tiles_;
-    const SegmentView& view_;
-    const TileLayout& layout_ = tile_layout();
-    StripWriter strip_;
-    std::vector<Frame> frames_;
-    std::size_t first_vertex_ = 0;
-};
+template <class T>
+void copy(GrowingArray<T>& to, std::uint32_t at, std::span<const T> from, std::uint32_t first, std::uint32_t count) {
+    if (count > 0) std::memcpy(to.data() + at, from.data() + first, count * sizeof(T));
+}
 
 }  // namespace
 
+/// A segment of a block, before it has a place.
+struct Segments::Part {
+    static constexpr std::uint32_t is_new = 0xffffffff;
+
+    LocationCode cell;
+    std::uint32_t leaves;
+    std::uint32_t piece;  ///< as it is in the block, or is_new
+    BuiltSegment built{};
+};
+
+/// A block to be brought up to date.
+struct Segments::Job {
+    PlacedCell cell;
+    std::uint32_t block;
+    std::vector<Part> parts{};
+    const SegmentBuilder* builder = nullptr;
+};
+
 void Segments::build(const TileSource& tiles, const SegmentView& view, int threads) {
-    std::vector<Root> roots;
-    RootCollector collector(tiles, view, roots);
-    for (int rank = 0; rank < face_count; ++rank) {
-        const PlacedTile* face = tiles.tile(LocationCode::face_root(face_at_loop_rank(rank)));
-        assert(face != nullptr);
-        collector.cell(*face, 1);
-    }
+    clear();
+    update(tiles, view, threads);
+}
 
-    // Runs of roots, each built into storage of its own and joined in order: the same result for any number of threads.
-    constexpr std::size_t run = 32;
-    std::vector<std::unique_ptr<SegmentBuilder>> runs((roots.size() + run - 1) / run);
-    parallel_for(runs.size(), static_cast<unsigned>(std::max(threads, 1)), [&](std::size_t r) {
-        runs[r] = std::make_unique<SegmentBuilder>(tiles, view);
-        for (std::size_t i = r * run; i < std::min(roots.size(), (r + 1) * run); ++i) runs[r]->build(roots[i]);
-    });
+void Segments::update(const TileSource& tiles, const SegmentView& view, int threads) {
+    changed_vertices_.clear();
+    changed_indices_.clear();
+    built_ = 0;
+    if (tiles_from_ != &tiles || !view.same_but_for_eye_and_culling(view_)) clear();
+    const bool at_rest = listed_ && view.test.eye == view_.test.eye && view.culling == view_.culling;
+    tiles_from_ = &tiles;
+    view_ = view;
+    if (at_rest) return;
+    tree_.update(tiles, view);
+    release_dropped();
+    std::vector<Job> jobs = stale_blocks();
+    build_all(tiles, jobs, static_cast<std::size_t>(std::max(threads, 1)));
+    place(jobs, static_cast<std::size_t>(std::max(threads, 1)));
+    list();
+    shed_unseen();
+    listed_ = true;
+}
 
+void Segments::invalidate(std::span<const LocationCode> tile_roots) {
+    tree_.invalidate(tile_roots);
+    release_dropped();
+    listed_ = listed_ && tile_roots.empty();
+}
+
+void Segments::clear() {
+    tree_.clear();
+    blocks_.clear();
+    free_blocks_.clear();
     segments_.clear();
-    vertices_.clear();
-    indices_.clear();
-    leaf_levels_.clear();
-    tiles_ = 0;
-    damaged_ = false;
-    ratio_max_ = deviation_max_ = 0;
-    for (const auto& b : runs) {
-        const auto vertex = static_cast<std::uint32_t>(vertices_.size());
-        const auto index = static_cast<std::uint32_t>(indices_.size());
-        const auto leaf = static_cast<std::uint32_t>(leaf_levels_.size());
-        for (Segment s : b->segments) {
-            s.first_vertex += vertex;
-            s.first_index += index;
-            s.first_leaf += leaf;
-            segments_.push_back(s);
+    listed_ = false;
+    vertex_places_.clear();
+    index_places_.clear();
+    total_leaves_ = 0;
+}
+
+std::vector<Segments::Job> Segments::stale_blocks() {
+    std::vector<Job> jobs;
+    for (const auto [i, open] : tree_.in_view()) {
+        SegmentNode& n = tree_.node(i);
+        if (n.content == SegmentNode::none) {
+            if (free_blocks_.empty()) {
+                n.content = static_cast<std::uint32_t>(blocks_.size());
+                blocks_.emplace_back();
+            } else {
+                n.content = free_blocks_.back();
+                free_blocks_.pop_back();
+            }
         }
-        vertices_.insert(vertices_.end(), b->vertices.span().begin(), b->vertices.span().end());
-        indices_.insert(indices_.end(), b->indices().begin(), b->indices().end());
-        leaf_levels_.insert(leaf_levels_.end(), b->leaf_levels.begin(), b->leaf_levels.end());
-        tiles_ += b->tile_visits;
-        damaged_ = damaged_ || b->damaged;
-        ratio_max_ = std::max(ratio_max_, b->ratio_max);
-        deviation_max_ = std::max(deviation_max_, b->deviation_max);
+        if (tree_.odometer() >= blocks_[n.content].expires) jobs.push_back({{n.tile, n.local}, n.content});
     }
+    return jobs;
+}
+
+// Neighbours share tiles, so a thread takes several in a row.
+void Segments::build_all(const TileSource& tiles, std::span<Job> jobs, std::size_t threads) {
+    constexpr std::size_t run = 4;
+    const std::size_t workers = std::min(threads, (jobs.size() + run - 1) / run);
+    while (builders_.size() < workers) builders_.push_back(std::make_unique<SegmentBuilder>());
+    std::atomic<std::size_t> next = 0;
+    parallel_for(workers, static_cast<unsigned>(workers), [&](std::size_t w) {
+        builders_[w]->begin(tiles, view_);
+        for (std::size_t first; (first = next.fetch_add(run, std::memory_order_relaxed)) < jobs.size();)
+            for (Job& job : jobs.subspan(first, std::min(run, jobs.size() - first))) build(tiles, job, *builders_[w]);
+    });
+}
+
+// What has expired is built again and may come out as several; where halves have become small enough to be one segment,
+// it is made of them. Both depend on nothing but the leaves there are.
+void Segments::build(const TileSource& tiles, Job& job, SegmentBuilder& builder) const {
+    const Block& block = blocks_[job.block];
+    const LocationCode half = job.cell.code();
+    job.builder = &builder;
+    std::vector<BuiltSegment> built;
+    const auto add = [&](const Part& part) {
+        job.parts.push_back(part);
+        while (job.parts.size() > 1) {
+            Part &a = job.parts[job.parts.size() - 2], &b = job.parts.back();
+            if (a.cell == half || a.cell.sibling() != b.cell ||
+                a.leaves + b.leaves > static_cast<std::uint32_t>(view_.segment_leaves))
+                return;
+            a = {.cell = a.cell.parent(), .leaves = a.leaves + b.leaves, .piece = Part::is_new};
+            job.parts.pop_back();
+        }
+    };
+    const auto add_built = [&] {
+        for (const BuiltSegment& b : built)
+            add({.cell = b.cell, .leaves = b.leaves, .piece = Part::is_new, .built = b});
+        built.clear();
+    };
+    if (block.pieces.empty()) {
+        builder.build(job.cell, half, built);
+        add_built();
+    }
+    for (std::uint32_t k = 0; k < block.pieces.size(); ++k) {
+        const Piece& piece = block.pieces[k];
+        if (tree_.odometer() < piece.expires) {
+            add({.cell = piece.segment.root, .leaves = piece.segment.leaves, .piece = k});
+        } else {
+            builder.build(piece.root, half, built);
+            add_built();
+        }
+    }
+    for (Part& part : job.parts)
+        if (part.piece == Part::is_new && part.built.leaves == 0) {
+            builder.build(find_split_cell(tiles, part.cell), half, built);
+            assert(built.size() == 1 && built[0].cell == part.cell && built[0].leaves == part.leaves);
+            part.built = built[0];
+            built.clear();
+        }
+}
+
+void Segments::place(std::span<Job> jobs, std::size_t threads) {
+    for (Job& job : jobs) place(job);
+    join(changed_vertices_);
+    join(changed_indices_);
+    vertices_.resize(vertex_places_.size());
+    if (view_.morph) morphs_.resize(vertex_places_.size());
+    indices_.resize(index_places_.size());
+    leaf_levels_.resize(index_places_.size());
+    constexpr std::size_t run = 16;
+    parallel_for((jobs.size() + run - 1) / run, static_cast<unsigned>(threads), [&](std::size_t r) {
+        for (const Job& job : jobs.subspan(r * run, std::min(run, jobs.size() - r * run)))
+            for (std::size_t k = 0; k < job.parts.size(); ++k) {
+                const auto& [cell, leaves, piece, b] = job.parts[k];
+                if (piece != Part::is_new) continue;
+                const Segment& s = blocks_[job.block].pieces[k].segment;
+                copy(vertices_, s.first_vertex, job.builder->vertices(), b.first_vertex, b.vertices);
+                if (view_.morph) copy(morphs_, s.first_vertex, job.builder->morphs(), b.first_vertex, b.vertices);
+                copy(indices_, s.first_index, job.builder->indices(), b.first_index, b.indices);
+                copy(leaf_levels_, s.first_leaf, job.builder->leaf_levels(), b.first_leaf, b.leaves);
+            }
+    });
+}
+
+/// Gives places to the new parts of a block.
+void Segments::place(Job& job) {
+    Block& block = blocks_[job.block];
+    std::size_t next = 0;  // kept pieces are in order: those between them go
+    const auto release_until = [&](std::size_t end) {
+        for (; next < end; ++next) release(block.pieces[next].segment);
+    };
+    for (const Part& part : job.parts)
+        if (part.piece != Part::is_new) {
+            release_until(part.piece);
+            ++next;
+        }
+    release_until(block.pieces.size());
+
+    std::vector<Piece> pieces;
+    pieces.reserve(job.parts.size());
+    block.expires = infinity;
+    for (const Part& part : job.parts) {
+        pieces.push_back(part.piece == Part::is_new ? new_piece(part.built) : block.pieces[part.piece]);
+        block.expires = std::min(block.expires, pieces.back().expires);
+    }
+    block.pieces = std::move(pieces);
+}
+
+Segments::Piece Segments::new_piece(const BuiltSegment& b) {
+    const Range vertices = vertex_places_.allocate(b.vertices), indices = index_places_.allocate(b.indices);
+    changed_vertices_.push_back(vertices);
+    changed_indices_.push_back(indices);
+    total_leaves_ += b.leaves;
+    ++built_;
+    return {.segment = {.root = b.cell,
+                        .patch = b.patch,
+                        .first_vertex = vertices.first,
+                        .vertex_count = vertices.count,
+                        .first_index = indices.first,
+                        .index_count = indices.count,
+                        .leaves = b.leaves,
+                        .first_leaf = indices.first,
+                        .detailed = b.detailed},
+            .sphere = b.sphere,
+            .expires = tree_.expiry(b.slack),
+            .ratio_max = b.ratio_max,
+            .least_reach = b.least_reach,
+            .deviation_max = b.deviation_max,
+            .odometer = tree_.odometer(),
+            .root = b.root,
+            .damaged = b.damaged};
+}
+
+// While the slack holds, what could be split needs not: its ratio is at most 1. What lacks a tile has come nearer by what
+// the eye went at most, and the nearest by the largest factor.
+double Segments::ratio_of(const Piece& p) const {
+    const double gone = tree_.odometer() - p.odometer;
+    if (gone == 0 || p.ratio_max == 0) return p.ratio_max;
+    if (p.least_reach == infinity) return 1;
+    return gone < p.least_reach ? std::max(1.0, p.ratio_max * (p.least_reach / (p.least_reach - gone))) : infinity;
+}
+
+void Segments::list() {
+    segments_.clear();
+    sums_ = {};
+    const CullingTest culling(view_.culling);
+    for (const auto [i, open] : tree_.in_view())
+        for (const Piece& p : blocks_[tree_.node(i).content].pieces) {
+            sums_.block_leaves += p.segment.leaves;
+            unsigned still_open = open;
+            if (culling.hidden(p.sphere.centre, p.sphere.radius, still_open)) continue;
+            segments_.push_back(p.segment);
+            sums_.leaves += p.segment.leaves;
+            sums_.vertices += p.segment.vertex_count;
+            sums_.indices += p.segment.index_count;
+            sums_.damaged = sums_.damaged || p.damaged;
+            sums_.ratio_max = std::max(sums_.ratio_max, ratio_of(p));
+            sums_.deviation_max = std::max(sums_.deviation_max, p.deviation_max);
+        }
+    kept_ = total_leaves_ - sums_.block_leaves;
+}
+
+void Segments::release_dropped() {
+    for (const std::uint32_t i : tree_.dropped()) {
+        for (const Piece& p : blocks_[i].pieces) release(p.segment);
+        blocks_[i] = {};
+        free_blocks_.push_back(i);
+    }
+    tree_.clear_dropped();
+}
+
+void Segments::release(const Segment& s) {
+    vertex_places_.free({s.first_vertex, s.vertex_count});
+    index_places_.free({s.first_index, s.index_count});
+    total_leaves_ -= s.leaves;
+}
+
+void Segments::shed_unseen() {
+    if (kept_ <= view_.kept_leaves) return;
+    for (const std::uint32_t i : tree_.hidden_longest_first()) {
+        tree_.drop(i);
+        release_dropped();
+        kept_ = total_leaves_ - sums_.block_leaves;
+        if (kept_ <= view_.kept_leaves) return;
+    }
+}
+
+std::uint64_t Segments::hash() const {
+    std::uint64_t h = 0xcbf29ce484222325u;
+    const auto add = [&](std::uint64_t word) { h = (h ^ word) * 0x9e3779b97f4a7c15u, h ^= h >> 29; };
+    for (const Segment& s : segments_) {
+        for (const std::uint64_t word : {s.root.bits(), s.patch.bits(), std::uint64_t{s.vertex_count},
+                                         std::uint64_t{s.index_count}, std::uint64_t{s.leaves * 2 + s.detailed}})
+            add(word);
+        const auto words = [&](const auto* data, std::size_t count) {
+            for (std::size_t k = 0; k < count; ++k) add(data[k]);
+        };
+        for (const SegmentVertex& v : vertices().subspan(s.first_vertex, s.vertex_count)) {
+            std::uint64_t word[3];
+            std::memcpy(word, &v, sizeof v);
+            words(word, 3);
+        }
+        if (view_.morph)
+            for (const MorphVertex& m : morphs().subspan(s.first_vertex, s.vertex_count)) {
+                std::uint32_t word[5];
+                std::memcpy(word, &m, sizeof m);
+                words(word, 5);
+            }
+        words(indices_.data() + s.first_index, s.index_count);
+        words(leaf_levels_.data() + s.first_leaf, s.leaves);
+    }
+    return h;
 }
 
 }  // namespace planet

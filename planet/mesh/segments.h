@@ -1,79 +1,139 @@
 #pragma once
 // Segments: what a picture is drawn from. A segment is all leaves below one cell, with its own strip, its own copies of
-// border vertices (the same bits as its neighbours') and coordinates in the 64 x 64 lattice of its root's diamond,
-// where per-pixel normals are looked up. Segments out of view are not built.
+// border vertices (the same bits as its neighbours') and coordinates in the 64 x 64 lattice of its patch, where
+// per-pixel normals are looked up. From frame to frame, only those whose slack is used up are built again.
 
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "planet/mesh/culling.h"
 #include "planet/mesh/growing_array.h"
-#include "planet/mesh/placed_tile.h"
-#include "planet/mesh/view.h"
+#include "planet/mesh/range_allocator.h"
+#include "planet/mesh/segment_builder.h"
+#include "planet/mesh/segment_tree.h"
 
 namespace planet {
-
-/// 24 bytes, as the GPU takes them.
-struct SegmentVertex {
-    GridPosition position;
-    std::uint16_t u, v;  ///< 32768 = 1, in the frame of the segment's patch
-    float height;        ///< metres above the store's datum, not exaggerated
-};
-static_assert(sizeof(SegmentVertex) == 24);
 
 struct Segment {
     LocationCode root;
     /// Names the square (patch) whose lattice u, v run over: a cell and its neighbour across the split side. The cell is
-    /// the root, or its ancestor at SegmentView::finest_patch_level. The
-    /// lesser code's apex is (0,0), its left corner (1,0), its right corner (0,1), the other apex (1,1).
+    /// the root or one above it. The lesser code's apex is (0,0), its left corner (1,0), its right corner (0,1), the
+    /// other apex (1,1).
     LocationCode patch;
-    double distance_m;  ///< least distance from the eye to anything in the segment; a lower bound
-    std::uint32_t first_vertex, first_index, index_count;
+    std::uint32_t first_vertex, vertex_count, first_index, index_count;
     std::uint32_t leaves;
-    std::uint32_t first_leaf;  ///< into leaf_levels()
+    std::uint32_t first_leaf;  ///< into leaf_levels(); has room for as many as there are indices
     bool detailed;             ///< holds tiles rooted at SegmentView::detail_level or deeper
 };
 
-struct SegmentView {
-    SplitTest test;
-    Culling culling;
-    /// A segment ends where the root's leg, seen at its least distance, is shorter than this angle (radians): that
-    /// bounds the number of lattice samples per pixel from below.
-    double segment_angle = 0.1;
-    double radius_m = 6371008.8;  ///< of the planet
-    int detail_level = 24;        ///< bisection level, a multiple of 12; see Segment::detailed
-    /// No patch is of a finer bisection level: below, the lattice of normals would be finer than the data.
-    int finest_patch_level = max_bisection_level;
-};
-
 /// Strips and vertices of all segments in view, in Sierpinski order. Keeps its storage from one use to the next.
+///
+/// What is in view, and every bit of it, is the same after update() as after build(), whatever came before and whatever
+/// the number of threads; but for where it is in vertices() and indices(), and the certificate.
 class Segments {
   public:
-    /// Replaces the segments. The result does not depend on the number of threads.
+    /// Makes all segments anew, one behind the other.
     void build(const TileSource& tiles, const SegmentView& view, int threads = 1);
 
+    /// Builds what the last view leaves to be built. If any but eye and culling has changed, or the source, that is
+    /// everything.
+    void update(const TileSource& tiles, const SegmentView& view, int threads = 1);
+
+    /// To be called when tiles of the source came, went or changed: segments above and below these cells are built anew.
+    /// Until the next update no tile is looked at.
+    void invalidate(std::span<const LocationCode> tile_roots);
+
+    /// Those in view.
     std::span<const Segment> segments() const { return segments_; }
-    std::span<const SegmentVertex> vertices() const { return vertices_; }
+    /// Segments in view, others that are kept, and gaps.
+    std::span<const SegmentVertex> vertices() const { return vertices_.span(); }
+    /// Parallel to vertices(), if SegmentView::morph.
+    std::span<const MorphVertex> morphs() const { return morphs_.span(); }
     /// One triangle strip a segment, indices relative to first_vertex.
-    std::span<const std::uint32_t> indices() const { return indices_; }
+    std::span<const std::uint32_t> indices() const { return indices_.span(); }
     /// The bisection level of each leaf, in the order of the strips.
-    std::span<const std::uint8_t> leaf_levels() const { return leaf_levels_; }
-    /// How often the walk entered a tile below a segment's own, and whether one stands in for a damaged tile.
-    std::size_t tiles() const { return tiles_; }
-    bool damaged() const { return damaged_; }
-    /// The certificate: the largest projected deviation of the picture is at most max_pixel_deviation times this.
-    double ratio_max() const { return ratio_max_; }
+    std::span<const std::uint8_t> leaf_levels() const { return leaf_levels_.span(); }
+
+    /// Of vertices() (and morphs()) and of indices(): what the last build() or update() has written, ascending.
+    std::span<const Range> changed_vertices() const { return changed_vertices_; }
+    std::span<const Range> changed_indices() const { return changed_indices_; }
+    /// Segments written by the last build() or update().
+    std::size_t built() const { return built_; }
+
+    /// Sums over the segments in view.
+    std::size_t leaf_count() const { return sums_.leaves; }
+    std::size_t vertex_count() const { return sums_.vertices; }
+    std::size_t index_count() const { return sums_.indices; }
+    /// Leaves that are kept though their patches are out of view.
+    std::size_t kept_leaves() const { return kept_; }
+    /// Whether a damaged tile is among those looked at.
+    bool damaged() const { return sums_.damaged; }
+    /// The certificate: the largest projected deviation of the picture is at most max_pixel_deviation times this. Exact
+    /// after build(); of segments built for another eye update() only knows that it is at most 1, and of what lacks a
+    /// tile, by how much it can have grown.
+    double ratio_max() const { return sums_.ratio_max; }
     /// The largest deviation of a leaf from the finest surface, metres, exaggerated.
-    double deviation_max_m() const { return deviation_max_; }
+    double deviation_max_m() const { return sums_.deviation_max; }
+
+    /// Of all that is in view but where it is stored: equal for equal segments in equal order.
+    std::uint64_t hash() const;
 
   private:
+    /// A segment with a place.
+    struct Piece {
+        Segment segment;
+        Sphere sphere;
+        double expires;  ///< see SegmentTree
+        double ratio_max, least_reach, deviation_max;
+        double odometer;  ///< when it was built
+        PlacedCell root;
+        bool damaged;
+    };
+    /// The segments of a patch's half, in Sierpinski order.
+    struct Block {
+        std::vector<Piece> pieces;
+        double expires = SegmentNode::never;  ///< the first of them
+    };
+    struct Job;
+    struct Part;
+    struct Sums {
+        std::size_t leaves = 0, vertices = 0, indices = 0, block_leaves = 0;
+        bool damaged = false;
+        double ratio_max = 0, deviation_max = 0;
+    };
+
+    void clear();
+    std::vector<Job> stale_blocks();
+    void build_all(const TileSource& tiles, std::span<Job> jobs, std::size_t threads);
+    void build(const TileSource& tiles, Job& job, SegmentBuilder& builder) const;
+    void place(std::span<Job> jobs, std::size_t threads);
+    void place(Job& job);
+    double ratio_of(const Piece& piece) const;
+    Piece new_piece(const BuiltSegment& b);
+    void list();
+    void release_dropped();
+    void release(const Segment& s);
+    void shed_unseen();
+
+    SegmentTree tree_;
+    SegmentView view_;
+    const TileSource* tiles_from_ = nullptr;
+    bool listed_ = false;  // segments_ is that of view_
+    std::vector<Block> blocks_;
+    std::vector<std::uint32_t> free_blocks_;
+    std::vector<std::unique_ptr<SegmentBuilder>> builders_;
+
+    RangeAllocator vertex_places_, index_places_;  // levels have the place of indices
+    GrowingArray<SegmentVertex> vertices_;
+    GrowingArray<MorphVertex> morphs_;
+    GrowingArray<std::uint32_t> indices_;
+    GrowingArray<std::uint8_t> leaf_levels_;
+
     std::vector<Segment> segments_;
-    std::vector<SegmentVertex> vertices_;
-    std::vector<std::uint32_t> indices_;
-    std::vector<std::uint8_t> leaf_levels_;
-    std::size_t tiles_ = 0;
-    bool damaged_ = false;
-    double ratio_max_ = 0, deviation_max_ = 0;
+    std::vector<Range> changed_vertices_, changed_indices_;
+    std::size_t built_ = 0, total_leaves_ = 0, kept_ = 0;
+    Sums sums_;
 };
 
 }  // namespace planet

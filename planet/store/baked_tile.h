@@ -1,7 +1,6 @@
 #pragma once
-// Tiles while they are being baked, and the settling of what they share.
+// A tile as the bake encodes it, and the arithmetic of saturation that baking and reading share.
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,19 +20,12 @@ struct SideGain {
 };
 
 struct BakedTile {
-    Tile tile;
-    std::vector<glm::vec3> rounded;      ///< by vertex index: m of the split test
-    std::vector<std::uint8_t> exists;    ///< by local index
-    std::vector<SideGain> gain;          ///< by side cell
-    std::array<std::int32_t, 3> beside;  ///< by Side of the root: the tile of the same level there, -1: none
-    std::int32_t above = -1;             ///< the tile that holds the root's cell
-    std::vector<std::int32_t> below;     ///< by position at relative level 12, -1: none; empty for leaf tiles
-    bool inner() const { return !below.empty(); }
+    Tile tile;                         ///< deviation and radius: of inner tiles only
+    std::vector<std::uint8_t> exists;  ///< by local index
+    std::vector<SideGain> gain;        ///< by side cell; of leaf tiles only
+    bool has_tiles_below = false;
+    bool inner() const { return has_tiles_below; }
 };
-
-/// Empty tiles for a plan, tied to each other, with their existence flags: a diamond exists iff both its cells have a
-/// record and both its parents exist. @param plan ascending
-std::vector<BakedTile> tie_tiles(const std::vector<PlannedTile>& plan);
 
 /// The records of one tile as they are saturated. Spans are by local index, but `rounded` by vertex index.
 struct Saturation {
@@ -49,15 +41,5 @@ struct Saturation {
     /// Gives both cells of the diamond i inside the tile the larger numbers.
     void join(unsigned i, unsigned beyond) const;
 };
-
-/// Where radii of a tile start: corner_distance(), rounded up, of the existing cells that lack a child diamond.
-/// @param lacks_below by position at the level below the last: whether the child diamonds in other tiles are incomplete
-void corner_radii(const TileLattice& lattice, std::span<const std::uint8_t> exists, bool inner,
-                  std::span<const std::uint8_t> lacks_below, std::span<float> radius);
-
-/// Saturates every tile and settles their sides, from the finest level up, so that one pass is the fixpoint: a record
-/// depends on finer ones only. Deviations of inner tiles and of sides are rounded up the ladder; so are the radii of
-/// sides and of the finest diamonds of inner tiles.
-void settle(std::span<BakedTile> tiles);
 
 }  // namespace planet

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <unordered_map>
-#include <unordered_set>
 
 #include "planet/error.h"
 #include "planet/octahedron/cell_metrics.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/tile_sides.h"
 
 namespace planet {
 
@@ -22,31 +19,80 @@ Cap cap_of(const Corners& c) {
     return {centre, 2 * std::asin(std::min(1.0, chord / 2)) * (1 + 1e-9) + 1e-15};
 }
 
-class Planner {
+}  // namespace
+
+TilePlan::Depths TilePlan::at(LocationCode root) const {
+    const auto found = blocks_.find(root.bits() >> tile_levels);
+    return found == blocks_.end() ? Depths{} : found->second->depths[place(root)];
+}
+
+int TilePlan::depth(LocationCode root) const {
+    return at(root).any();
+}
+
+bool TilePlan::is_whole(LocationCode root) const {
+    const Depths d = at(root);
+    return d.wanted >= d.needed;
+}
+
+bool TilePlan::has_record(LocationCode cell) const {
+    const auto [root, local] = cell_in_tile(cell);
+    return relative_level(local) < at(root).any();
+}
+
+bool TilePlan::is_in_whole_part(LocationCode cell) const {
+    const auto [root, local] = cell_in_tile(cell);
+    return relative_level(local) < at(root).wanted;
+}
+
+std::vector<LocationCode> TilePlan::below(LocationCode root) const {
+    std::vector<LocationCode> roots;
+    const auto found = blocks_.find(root.bits());
+    if (found == blocks_.end()) return roots;
+    for (std::size_t k = 0; k < tile_cells; ++k)
+        if (found->second->depths[k].any() > 0) roots.emplace_back(root.bits() << tile_levels | k);
+    return roots;
+}
+
+bool TilePlan::is_final(LocationCode root) const {
+    return blocks_.at(root.bits() >> tile_levels)->final[place(root)];
+}
+
+void TilePlan::mark_final(LocationCode root) {
+    blocks_.at(root.bits() >> tile_levels)->final.set(place(root));
+}
+
+void TilePlan::count() {
+    for (const auto& [above, block] : blocks_) {
+        for (std::size_t k = 0; k < tile_cells; ++k) {
+            const int depth = block->depths[k].any();
+            if (depth == 0) continue;
+            const LocationCode root(above << tile_levels | k);
+            ++tiles_;
+            vertices_ += tile_layout().vertex_count[static_cast<std::size_t>(depth)];
+            finest_level_ = std::max(finest_level_, root.bisection_level() + depth);
+        }
+    }
+}
+
+class CoveragePlanner {
   public:
-    Planner(const ElevationField& field, const CoverageLimits& limits) : field_(field), limits_(limits) {}
+    CoveragePlanner(const ElevationField& field, const CoverageLimits& limits) : field_(field), limits_(limits) {}
 
-    std::vector<PlannedTile> plan() {
+    TilePlan plan() {
         for (int face = 0; face < face_count; ++face) want(LocationCode::face_root(face), face_corners(face));
-        std::vector<LocationCode> wanted;
-        for (const auto& [root, depths] : tiles_) wanted.push_back(LocationCode(root));
-        std::sort(wanted.begin(), wanted.end());
-        for (const LocationCode root : wanted) pad(root);
-
-        std::vector<PlannedTile> planned;
-        for (const auto& [root, depths] : tiles_)
-            planned.push_back({LocationCode(root), depths.any(), parents_.contains(root)});
-        std::sort(planned.begin(), planned.end(), [](auto& a, auto& b) { return a.root < b.root; });
-        return planned;
+        std::vector<std::uint64_t> blocks;  // padding makes more
+        for (const auto& [above, block] : plan_.blocks_) blocks.push_back(above);
+        for (const std::uint64_t above : blocks) {
+            const TilePlan::Block& block = *plan_.blocks_.at(above);
+            for (std::size_t k = 0; k < tile_cells; ++k)
+                if (block.depths[k].wanted > 0) pad(LocationCode(above << tile_levels | k));
+        }
+        plan_.count();
+        return std::move(plan_);
     }
 
   private:
-    struct Depths {
-        int wanted = 0;  ///< every diamond of cells above this depth must exist
-        int needed = 0;  ///< some must, for other tiles
-        int any() const { return std::max(wanted, needed); }
-    };
-
     int finest_level(const Corners& c) const {
         const double spacing = field_.spacing(cap_of(c));
         int level = std::isfinite(spacing) ? level_for_spacing(spacing, limits_.mean_radius_m) : 0;
@@ -69,33 +115,40 @@ class Planner {
         for (int i = 0; i < 2; ++i) want_below(cell.child(i), child_corners(c, m, i), levels - 1);
     }
 
+    // The tile above a wanted one is whole; so nothing is left to require if those beside it are as deep.
     void pad(LocationCode root) {
-        const int depth = tiles_.at(root.bits()).wanted;
+        const int depth = plan_.at(root).wanted;
+        const auto is_as_deep = [&](Side side) { return plan_.at(neighbor(root, side)).wanted >= depth; };
+        if (is_as_deep(Side::split) && is_as_deep(Side::left_leg) && is_as_deep(Side::right_leg)) return;
         if (root.bisection_level() > 0) require(root.parent());
         for (const SideCell& s : side_cells(depth)) require(neighbor(cell_code(root, s.cell)));
     }
 
     // The diamond of this cell must exist, and so all it depends on.
     void require(LocationCode cell) {
+        if (plan_.is_in_whole_part(cell)) return;
         const auto [root, local] = cell_in_tile(cell);
-        const int depth = relative_level(local) + 1;
-        if (const auto known = tiles_.find(root.bits()); known != tiles_.end() && known->second.wanted >= depth) return;
-        if (!required_.insert(cell.bits()).second) return;
-        charge(48);
-        deepen(root, 0, depth);
+        const auto [known, is_new] = required_.try_emplace(root.bits());
+        if (is_new) {
+            charge(sizeof(std::bitset<tile_cells>) + 64);
+            known->second = std::make_unique<std::bitset<tile_cells>>();
+        }
+        if (known->second->test(local)) return;
+        known->second->set(local);
+        deepen(root, 0, relative_level(local) + 1);
         if (cell.bisection_level() > 0) require(cell.parent());
         require(neighbor(cell));
     }
 
     void deepen(LocationCode root, int wanted, int needed) {
-        const bool has_parent = root.bisection_level() > 0;
-        if (has_parent && parents_.insert(root.bits() >> tile_levels).second)
-            charge(planned_bytes({{}, tile_levels, true}) - planned_bytes({{}, tile_levels, false}));
-        Depths& tile = tiles_[root.bits()];
-        const std::size_t before = tile.any() ? planned_bytes({root, tile.any(), false}) : 0;
-        tile.wanted = std::max(tile.wanted, wanted);
-        tile.needed = std::max(tile.needed, needed);
-        charge(planned_bytes({root, tile.any(), false}) - before);
+        const auto [found, is_new] = plan_.blocks_.try_emplace(root.bits() >> tile_levels);
+        if (is_new) {
+            charge(sizeof(TilePlan::Block) + 64);
+            found->second = std::make_unique<TilePlan::Block>();
+        }
+        TilePlan::Depths& d = found->second->depths[TilePlan::place(root)];
+        d.wanted = static_cast<std::uint8_t>(std::max<int>(d.wanted, wanted)) & 15u;
+        d.needed = static_cast<std::uint8_t>(std::max<int>(d.needed, needed)) & 15u;
     }
 
     void charge(std::size_t bytes) {
@@ -103,34 +156,24 @@ class Planner {
         if (bytes_ <= limits_.memory_bytes) return;
         throw Error(Fault::bad_usage, "bake",
                     "down to bisection level " + std::to_string(limits_.finest_level) +
-                        " this elevation needs more than " + std::to_string(limits_.memory_bytes >> 20) +
+                        " the plan alone needs more than " + std::to_string(limits_.memory_bytes >> 20) +
                         " MiB of memory",
                     "a lower finest level or a larger memory limit");
     }
 
     const ElevationField& field_;
     const CoverageLimits& limits_;
-    std::unordered_map<std::uint64_t, Depths> tiles_;
-    std::unordered_set<std::uint64_t> parents_;
-    std::unordered_set<std::uint64_t> required_;
+    TilePlan plan_;
+    std::unordered_map<std::uint64_t, std::unique_ptr<std::bitset<tile_cells>>> required_;  // by tile: local indices
     std::size_t bytes_ = 0;
 };
-
-}  // namespace
 
 Cap cap_of(LocationCode cell) {
     return cap_of(corners(cell));
 }
 
-std::size_t planned_bytes(const PlannedTile& tile) {
-    // As BakedTile holds them: by vertex height, undulation, rounded position; by cell deviation, radius, existence.
-    const std::size_t vertices = tile_layout().vertex_count[static_cast<std::size_t>(tile.depth)];
-    const std::size_t records = std::size_t{1} << tile.depth;
-    return 1536 + vertices * (4 + 8 + 12) + records * (4 + 4 + 1) + (tile.has_children ? 4 * tile_cells : 0);
-}
-
-std::vector<PlannedTile> coverage(const ElevationField& field, const CoverageLimits& limits) {
-    return Planner(field, limits).plan();
+TilePlan coverage(const ElevationField& field, const CoverageLimits& limits) {
+    return CoveragePlanner(field, limits).plan();
 }
 
 }  // namespace planet

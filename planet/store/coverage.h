@@ -6,18 +6,64 @@
 // only or not at all: such tiles are *padding*, as deep as they are needed. They are found by following every
 // dependency of the cells on the wanted tiles' sides with code arithmetic.
 
+#include <array>
+#include <bitset>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "planet/elevation/elevation_field.h"
 #include "planet/octahedron/location_code.h"
+#include "planet/store/tile_sides.h"
 
 namespace planet {
 
-struct PlannedTile {
-    LocationCode root;
-    int depth;  ///< 1..12
-    bool has_children;
+/// A byte and a bit for each tile, in blocks of the 4096 places below one tile. Roots are of bisection levels 0, 12, 24,
+/// 36 or 48.
+class TilePlan {
+  public:
+    /// How many levels of cells of a tile can be split, 1..12; 0: there is no such tile.
+    int depth(LocationCode root) const;
+    bool contains(LocationCode root) const { return depth(root) > 0; }
+    /// Whether every diamond of the tile exists, whatever is around it.
+    bool is_whole(LocationCode root) const;
+    bool has_tiles_below(LocationCode root) const { return blocks_.contains(root.bits()); }
+    /// Whether some tile holds a record for the cell; in a whole part of it, its diamond exists.
+    bool has_record(LocationCode cell) const;
+    bool is_in_whole_part(LocationCode cell) const;
+    /// The roots of the tiles below a tile, ascending.
+    std::vector<LocationCode> below(LocationCode root) const;
+
+    std::uint64_t tiles() const { return tiles_; }
+    std::uint64_t vertices() const { return vertices_; }  ///< of all tiles, those that tiles share counted in each
+    int finest_level() const { return finest_level_; }
+    std::size_t bytes() const { return blocks_.size() * (sizeof(Block) + 64); }
+
+    /// A mark that the bake sets on tiles whose records can no longer change.
+    bool is_final(LocationCode root) const;
+    void mark_final(LocationCode root);
+
+  private:
+    friend class CoveragePlanner;
+    struct Depths {
+        std::uint8_t wanted : 4 = 0;  ///< every diamond of cells above this depth exists
+        std::uint8_t needed : 4 = 0;  ///< some must, for other tiles
+        int any() const { return wanted > needed ? wanted : needed; }
+    };
+    struct Block {
+        std::array<Depths, tile_cells> depths{};
+        std::bitset<tile_cells> final;
+    };
+    static std::size_t place(LocationCode root) { return root.bits() & (tile_cells - 1); }
+    Depths at(LocationCode root) const;
+    void count();
+
+    // By the bits of the tile above; the faces are in block 0.
+    std::unordered_map<std::uint64_t, std::unique_ptr<Block>> blocks_;
+    std::uint64_t tiles_ = 0, vertices_ = 0;
+    int finest_level_ = 0;
 };
 
 struct CoverageLimits {
@@ -25,15 +71,12 @@ struct CoverageLimits {
     int least_level = 12;                             ///< the whole planet has cells at least this fine
     int finest_level = 60;                            ///< nothing is finer, whatever the field's spacing
     int extra_levels = 0;                             ///< added to what the field's spacing asks for
-    std::size_t memory_bytes = std::size_t{1} << 30;  ///< of the tiles in memory; see planned_bytes()
+    std::size_t memory_bytes = std::size_t{1} << 30;  ///< of the plan while it is made
 };
 
-/// An upper bound of the memory a bake holds for one tile.
-std::size_t planned_bytes(const PlannedTile& tile);
-
-/// The tiles of a bake, ascending by code (so parents come first). The eight faces are always among them.
-/// Throws Error(bad_usage) when they need more memory than allowed.
-std::vector<PlannedTile> coverage(const ElevationField& field, const CoverageLimits& limits);
+/// The tiles of a bake. The eight faces are always among them, and with a tile the one above it.
+/// Throws Error(bad_usage) when the plan needs more memory than allowed.
+TilePlan coverage(const ElevationField& field, const CoverageLimits& limits);
 
 /// A cap that holds the cell.
 Cap cap_of(LocationCode cell);

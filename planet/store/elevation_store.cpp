@@ -38,7 +38,9 @@ Header read_header(const std::filesystem::path& path) {
     return h;
 }
 
-void check_header(const std::filesystem::path& path) {
+}  // namespace
+
+void check_store_file(const std::filesystem::path& path) {
     const Header h = read_header(path);
     if (big_endian(h, 68) != store_application_id) refuse(path, "an SQLite file, but not an elevation store");
     const std::uint32_t version = big_endian(h, 60);
@@ -52,6 +54,8 @@ void check_header(const std::filesystem::path& path) {
     if (there < said)
         refuse(path, "cut short: " + std::to_string(there) + " of " + std::to_string(said) + " bytes are there");
 }
+
+namespace {
 
 bool has_journal(const std::filesystem::path& path) {
     std::error_code missing;
@@ -100,7 +104,7 @@ ElevationStore ElevationStore::open(const std::filesystem::path& path) {
         SqliteFile recovering(path, SqliteFile::Access::recover);
         recovering.number("SELECT count(*) FROM sqlite_schema");
     }
-    check_header(path);
+    check_store_file(path);
     return ElevationStore(SqliteFile(path, SqliteFile::Access::read));
 }
 
@@ -110,7 +114,14 @@ ElevationStore ElevationStore::open(const std::filesystem::path& path, const Ell
     if (!(there == expected))
         throw Error(Fault::bad_data, path.string(), "a store of another planet, " + to_string(there),
                     to_string(expected));
+    store.require_complete();
     return store;
+}
+
+void ElevationStore::require_complete() const {
+    if (!metadata().complete)
+        throw Error(Fault::bad_data, where(), "the store is not finished",
+                    "one whose bake has been ended with --resume");
 }
 
 ElevationStore::ElevationStore(SqliteFile&& file) : open_(std::make_unique<Open>(std::move(file))) {}

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,13 @@ class SqliteFile;
 
 inline constexpr int store_format_version = 2;
 
+/// The options of a bake that determine what is in its store. See BakeOptions.
+struct BakeSettings {
+    int least_level = 12, finest_level = 60, extra_levels = 0;
+    double quantum_m = 0;
+    bool operator==(const BakeSettings&) const = default;
+};
+
 /// What a store says of itself.
 struct StoreMetadata {
     int format_version = store_format_version;
@@ -30,7 +38,8 @@ struct StoreMetadata {
     double resampling_max_m = 0;
     std::uint64_t tiles = 0;
     std::uint64_t vertices = 0;  ///< of all tiles, those that tiles share counted in each
-    bool complete = false;       ///< the bake came to its end
+    bool complete = false;       ///< the bake came to its end; before, resampling_max_m is that of the tiles so far
+    BakeSettings settings;
     std::vector<SourceInfo> sources;
 };
 
@@ -51,8 +60,10 @@ class ElevationStore {
     /// other is not written to, and must not be written by others meanwhile.
     /// Throws Error(bad_data): missing, empty, not a store, cut short, of a newer version, damaged.
     static ElevationStore open(const std::filesystem::path& path);
-    /// The same; Error(bad_data) too if the store is of another planet.
+    /// The same, to draw or to query: Error(bad_data) too if the store is of another planet or not complete.
     static ElevationStore open(const std::filesystem::path& path, const Ellipsoid& expected);
+    /// Error(bad_data), naming --resume, if the bake did not come to its end.
+    void require_complete() const;
     /// Takes over a connection that a bake has filled.
     explicit ElevationStore(SqliteFile&& file);
 
@@ -76,7 +87,8 @@ class ElevationStore {
     /// Reads everything: checksums, that listed tiles exist and no others, that deviations and radii are nested, that
     /// tiles hold the same bits on the sides they share and at the corners they inherit, that inner deviations bound
     /// the tile's own vertices.
-    StoreCheck verify() const;
+    /// @param progress told the share that is done, 0..1, from time to time
+    StoreCheck verify(const std::function<void(double)>& progress = {}) const;
 
   private:
     struct Open;

@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <cctype>
+#include <cerrno>
 #include <system_error>
 
 #include "planet/error.h"
@@ -28,6 +29,14 @@ std::string uri_from_path(const std::filesystem::path& path, const char* query) 
     return uri + query;
 }
 
+// Quotas and limits of file sizes are I/O errors to SQLite.
+bool lacks_space(sqlite3* connection) {
+    const int code = sqlite3_errcode(connection) & 0xff;
+    if (code != SQLITE_IOERR) return code == SQLITE_FULL;
+    const int reason = sqlite3_system_errno(connection);
+    return reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
+}
+
 }  // namespace
 
 void SqliteFile::Close::operator()(sqlite3* c) const {
@@ -35,7 +44,7 @@ void SqliteFile::Close::operator()(sqlite3* c) const {
 }
 
 SqliteFile::SqliteFile(const std::filesystem::path& path, Access access)
-    : where_(access == Access::in_memory ? "store in memory" : path.string()) {
+    : where_(access == Access::in_memory ? in_memory_name : path.string()) {
     std::string uri = ":memory:";
     int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI;
     if (access == Access::create) {
@@ -64,6 +73,8 @@ SqliteFile::SqliteFile(const std::filesystem::path& path, Access access)
 }
 
 void SqliteFile::fail(std::string_view doing) const {
+    if (connection_ && lacks_space(get()))
+        throw Error(Fault::bad_data, where_, "the disk is full", "more space, then --resume");
     const char* reason = connection_ ? sqlite3_errmsg(get()) : "out of memory";
     throw Error(Fault::bad_data, where_, std::string(doing) + " (" + reason + ")");
 }
@@ -111,7 +122,7 @@ SqliteStatement& SqliteStatement::bind(int parameter, std::span<const std::uint8
 bool SqliteStatement::step() {
     const int result = sqlite3_step(statement_.get());
     if (result == SQLITE_ROW) return true;
-    if (result != SQLITE_DONE) file_->fail(result == SQLITE_FULL ? "the disk is full" : "the store cannot be used");
+    if (result != SQLITE_DONE) file_->fail("the store cannot be used");
     return false;
 }
 

@@ -23,6 +23,8 @@ class SqliteFile {
         in_memory,  ///< no file
     };
 
+    static constexpr const char* in_memory_name = "store in memory";
+
     /// Throws Error(bad_data), naming the path. No schema is read yet.
     SqliteFile(const std::filesystem::path& path, Access access);
 

@@ -20,7 +20,7 @@ class Checker {
     explicit Checker(const ElevationStore& store)
         : store_(store), cache_(store), scale_(tile_scale(store.metadata())) {}
 
-    StoreCheck run() {
+    StoreCheck run(const std::function<void(double)>& progress) {
         std::vector<LocationCode> codes;
         try {
             codes = store_.tiles();
@@ -28,7 +28,10 @@ class Checker {
             problem(error.what());
             return found_;
         }
-        for (const LocationCode root : codes) check(root, codes);
+        for (std::size_t t = 0; t < codes.size(); ++t) {
+            if (progress && t % 64 == 0) progress(static_cast<double>(t) / static_cast<double>(codes.size()));
+            check(codes[t], codes);
+        }
         const bool complete = store_.metadata().complete;
         for (int face = 0; complete && face < face_count; ++face) require(LocationCode::face_root(face), codes);
         if (complete && codes.size() != store_.metadata().tiles)
@@ -175,8 +178,8 @@ class Checker {
 
 }  // namespace
 
-StoreCheck ElevationStore::verify() const {
-    return Checker(*this).run();
+StoreCheck ElevationStore::verify(const std::function<void(double)>& progress) const {
+    return Checker(*this).run(progress);
 }
 
 }  // namespace planet

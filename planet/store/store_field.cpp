@@ -25,10 +25,10 @@ bool meet(const Cap& a, const Cap& b) {
 }  // namespace
 
 StoreField::StoreField(std::shared_ptr<const ElevationStore> store, std::size_t memory_bytes)
-    : store_(std::move(store)), cache_(*store_, memory_bytes), reader_(cache_) {}
+    : store_(std::move(store)), cache_(*store_, memory_bytes) {}
 
 SurfaceCursor StoreField::cursor() const {
-    return {reader_, Placement{store_->metadata().ellipsoid, 1.0}};
+    return {cache_, Placement{store_->metadata().ellipsoid, 1.0}};
 }
 
 void StoreField::heights(std::span<const glm::dvec3> normals, std::span<float> out) const {

@@ -45,19 +45,10 @@ class StoreField final : public ElevationField {
     SurfaceCursor cursor() const;
 
   private:
-    class Reader final : public TileReader {
-      public:
-        explicit Reader(const TileCache& cache) : cache_(cache) {}
-        std::shared_ptr<const Tile> tile(LocationCode root) const override { return cache_.tile(root); }
-
-      private:
-        const TileCache& cache_;
-    };
     int finest_level_in(const Cap& cap, LocationCode root, int known) const;
 
     std::shared_ptr<const ElevationStore> store_;
     TileCache cache_;
-    Reader reader_;
 };
 
 }  // namespace planet

@@ -42,7 +42,11 @@ Entries entries_of(const StoreMetadata& m) {
             {"finest_level", std::to_string(m.finest_level)},
             {"resampling_max_m", shortest(m.resampling_max_m)},
             {"tiles", std::to_string(m.tiles)},
-            {"vertices", std::to_string(m.vertices)}};
+            {"vertices", std::to_string(m.vertices)},
+            {"bake_least_level", std::to_string(m.settings.least_level)},
+            {"bake_finest_level", std::to_string(m.settings.finest_level)},
+            {"bake_extra_levels", std::to_string(m.settings.extra_levels)},
+            {"bake_quantum_m", shortest(m.settings.quantum_m)}};
 }
 
 std::string checksum_of(const Entries& entries, const std::vector<SourceInfo>& sources) {
@@ -101,16 +105,19 @@ Ellipsoid ellipsoid_from(const EntryReader& read) {
 
 }  // namespace
 
-void create_tables(SqliteFile& file) {
+void create_tables(SqliteFile& file, const StoreMetadata& metadata) {
     const std::string pragmas =
-        "PRAGMA page_size = 16384; PRAGMA application_id = " + std::to_string(store_application_id) +
+        "PRAGMA page_size = 16384; BEGIN; PRAGMA application_id = " + std::to_string(store_application_id) +
         "; PRAGMA user_version = " + std::to_string(store_format_version) + ";";
     file.run(pragmas.c_str());
     file.run(
         "CREATE TABLE metadata(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
         "CREATE TABLE sources(rank INTEGER PRIMARY KEY, name TEXT, checksum TEXT, crs TEXT, datum TEXT, spacing_m "
         "REAL);"
-        "CREATE TABLE tiles(code INTEGER PRIMARY KEY, data BLOB NOT NULL);");
+        "CREATE TABLE tiles(code INTEGER PRIMARY KEY, data BLOB NOT NULL);"
+        "CREATE TABLE unfinished(code INTEGER PRIMARY KEY, data BLOB NOT NULL);");
+    write_metadata(file, metadata);
+    file.run("COMMIT");
 }
 
 void write_metadata(SqliteFile& file, const StoreMetadata& m) {
@@ -157,31 +164,15 @@ StoreMetadata read_metadata(SqliteFile& file) {
     m.resampling_max_m = read.number<double>("resampling_max_m", 0, 1e9);
     m.tiles = read.number<std::uint64_t>("tiles", 0, std::uint64_t{1} << 60);
     m.vertices = read.number<std::uint64_t>("vertices", 0, std::uint64_t{1} << 60);
+    m.settings = {read.number<int>("bake_least_level", 1, max_bisection_level),
+                  read.number<int>("bake_finest_level", 1, max_bisection_level),
+                  read.number<int>("bake_extra_levels", -max_bisection_level, max_bisection_level),
+                  read.number<double>("bake_quantum_m", 0, most_quantum_m)};
     return m;
 }
 
 TileScale tile_scale(const StoreMetadata& m) {
     return {{m.ellipsoid, 1.0}, m.quantum_m, !m.undulation.empty()};
-}
-
-StoreWriter::StoreWriter(SqliteFile& file, StoreMetadata metadata) : file_(file), metadata_(std::move(metadata)) {
-    create_tables(file_);
-    metadata_.complete = false;
-    file_.run("BEGIN");
-    write_metadata(file_, metadata_);
-    file_.run("COMMIT; BEGIN");
-    insert_ = std::make_unique<SqliteStatement>(file_, "INSERT INTO tiles VALUES(?, ?)");
-}
-
-void StoreWriter::write(LocationCode root, std::span<const std::uint8_t> bytes) {
-    insert_->bind(1, static_cast<std::int64_t>(root.bits())).bind(2, bytes).step();
-    insert_->reset();
-    if (++written_ % tiles_in_a_transaction == 0) file_.run("COMMIT; BEGIN");
-}
-
-void StoreWriter::finish() {
-    insert_.reset();
-    file_.run("UPDATE metadata SET value = '1' WHERE key = 'complete'; COMMIT");
 }
 
 }  // namespace planet

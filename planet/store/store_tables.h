@@ -2,8 +2,7 @@
 // The tables of a store: metadata, sources, tiles.
 
 #include <cstdint>
-#include <memory>
-#include <span>
+#include <filesystem>
 
 #include "planet/store/elevation_store.h"
 #include "planet/store/sqlite_file.h"
@@ -20,20 +19,14 @@ StoreMetadata read_metadata(SqliteFile& file);
 /// What decoding a tile needs of the metadata.
 TileScale tile_scale(const StoreMetadata& metadata);
 
-/// Fills a new file. In transactions, so that a killed writer leaves a store that opens, marked as not complete.
-class StoreWriter {
-  public:
-    StoreWriter(SqliteFile& file, StoreMetadata metadata);
-    void write(LocationCode root, std::span<const std::uint8_t> bytes);
-    /// Ends the last transaction and marks the store complete.
-    void finish();
+/// Refuses, with one line, a file whose header says that it is not a store, of another version, or cut short.
+void check_store_file(const std::filesystem::path& path);
 
-  private:
-    static constexpr std::uint64_t tiles_in_a_transaction = 4096;
-    SqliteFile& file_;
-    StoreMetadata metadata_;
-    std::unique_ptr<SqliteStatement> insert_;
-    std::uint64_t written_ = 0;
-};
+/// The tables of a new store, in one transaction. Beside those of a finished store there is `unfinished`, in which a
+/// bake keeps what it knows of tiles that are not written yet.
+void create_tables(SqliteFile& file, const StoreMetadata& metadata);
+
+/// Replaces metadata and sources; in the caller's transaction.
+void write_metadata(SqliteFile& file, const StoreMetadata& metadata);
 
 }  // namespace planet

@@ -12,8 +12,15 @@ const PlacedTile* StoreTiles::tile(LocationCode root) const {
     // Placed outside the lock; should another thread have been faster, its tile is kept and this one dropped.
     const std::shared_ptr<const Tile> tile = tiles_->tile(root);
     auto placed = tile ? std::make_unique<const PlacedTile>(*tile, placement_) : nullptr;
+    const std::size_t bytes = placed ? placed->bytes() : 0;
     const std::lock_guard lock(shard.mutex);
-    return shard.placed.try_emplace(root.bits(), std::move(placed)).first->second.get();
+    const auto [at, added] = shard.placed.try_emplace(root.bits(), std::move(placed));
+    if (added) tiles_->count_drawn_bytes(static_cast<std::ptrdiff_t>(bytes));
+    return at->second.get();
+}
+
+StoreTiles::~StoreTiles() {
+    tiles_->count_drawn_bytes(-static_cast<std::ptrdiff_t>(bytes()));
 }
 
 std::size_t StoreTiles::count() const {

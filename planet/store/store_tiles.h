@@ -11,12 +11,14 @@
 
 namespace planet {
 
-/// Keeps every tile it has placed as long as it lives: a settled picture needs them all. Safe to use from several
-/// threads.
+/// Keeps every tile it has placed as long as it lives, whatever the cache's limit, but counts against it. What stands in
+/// for a damaged tile may leave cracks about it: for pictures see resident_tiles.h. Safe to use from several threads.
 class StoreTiles final : public TileSource {
   public:
     /// @param tiles must outlive this
     StoreTiles(const TileCache& tiles, const Placement& placement) : tiles_(&tiles), placement_(placement) {}
+
+    ~StoreTiles() override;
 
     const PlacedTile* tile(LocationCode root) const override;
 

@@ -11,16 +11,9 @@
 #include "planet/mesh/placed_tile.h"
 #include "planet/mesh/tile.h"
 #include "planet/octahedron/octahedron_map.h"
+#include "planet/store/tile_reader.h"
 
 namespace planet {
-
-/// Where tiles in memory come from.
-class TileReader {
-  public:
-    virtual ~TileReader() = default;
-    /// nullptr if there is none.
-    virtual std::shared_ptr<const Tile> tile(LocationCode root) const = 0;
-};
 
 /// One thread's. The reader must outlive it.
 class SurfaceCursor {

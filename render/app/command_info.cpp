@@ -1,4 +1,4 @@
-// octaglobe info: the build, its data, every way into OpenGL, limits.
+// octaglobe info: the build, its data, every way into OpenGL, limits; or what a store holds (store_report.h).
 
 #include <algorithm>
 #include <glm/glm.hpp>
@@ -6,9 +6,11 @@
 #include <memory>
 #include <thread>
 
+#include "planet/error.h"
 #include "render/app/data_path.h"
 #include "render/app/program.h"
 #include "render/app/report.h"
+#include "render/app/store_report.h"
 #include "render/app/table.h"
 #include "render/app/values.h"
 #include "render/app/version.h"
@@ -119,12 +121,23 @@ void add_limits(Lines& lines) {
 }  // namespace
 
 void add_info(CLI::App& program) {
-    auto json = std::make_shared<std::string>();
-    CLI::App* command = add_command(program, "info", "The build, its data, every way into OpenGL, limits",
-                                    "octaglobe info --json info.json");
+    auto json = std::make_shared<std::string>(), file = std::make_shared<std::string>();
+    CLI::App* command = add_command(program, "info", "The build, its data, every way into OpenGL, limits; or a store",
+                                    "octaglobe info --json info.json\n"
+                                    "  octaglobe info earth.octa");
+    add_value(*command, "file", "FILE", "Instead: what an elevation store holds",
+              [file](std::string_view where, const std::string& text) {
+                  if (text.empty()) throw planet::Error(planet::Fault::bad_usage, where, "empty file name", "a path");
+                  *file = text;
+              });
     add_json_option(*command, *json);
-    command->final_callback([json] {
+    command->final_callback([json, file] {
         Report report("info", *json);
+        if (!file->empty()) {
+            describe_store(*file, report);
+            report.write();
+            return;
+        }
         Lines lines(report);
         add_versions(lines);
         add_data(lines);

@@ -8,6 +8,7 @@
 #include "render/app/progress.h"
 #include "render/app/render_options.h"
 #include "render/app/report.h"
+#include "render/app/source_report.h"
 
 namespace render {
 namespace {
@@ -16,17 +17,6 @@ struct Options {
     RenderOptions render;
     std::string json;
 };
-
-nlohmann::ordered_json sources_json(const std::vector<planet::SourceInfo>& sources) {
-    auto list = nlohmann::ordered_json::array();
-    for (const auto& source : sources)
-        list.push_back({{"name", source.name},
-                        {"sha256", source.checksum},
-                        {"crs", source.crs},
-                        {"vertical_datum", planet::name_of(source.datum)},
-                        {"spacing_m", source.spacing_m}});
-    return list;
-}
 
 void fill(Report& report, const RenderOptions& options, const PictureReport& picture) {
     report.set("output", options.output.native());
@@ -43,7 +33,8 @@ void fill(Report& report, const RenderOptions& options, const PictureReport& pic
     report.set("deviation_max_m", picture.deviation_max_m);
     report.set("pixel_deviation_max", picture.pixel_deviation_max);
     report.set("pixel_deviation_bound", options.max_pixel_deviation);
-    report.set("damaged_tiles_met", picture.damaged);
+    report.set("damaged", !picture.damage.empty());
+    report.set("damaged_tiles", picture.damage);
     report.set("exaggeration", options.exaggeration);
     report.set("crs", picture.crs);
     report.set("vertical_datum", picture.vertical_datum);
@@ -73,8 +64,8 @@ void add_render(CLI::App& program) {
         // Refuses an output that cannot be written before the work, not after it.
         { const OutputFile writable("--output", render.output); }
         const PictureReport picture = draw_picture(render);
-        if (picture.damaged)
-            std::cerr << "octaglobe: warning: tiles of the store are damaged; coarser ones stand in for them\n";
+        for (const auto& line : picture.damage)
+            std::cerr << "octaglobe: warning: " << line << "; a coarser one stands in for it\n";
         fill(report, render, picture);
         report.write();
     });

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include "planet/error.h"
-#include "planet/store/bake.h"
 #include "render/app/data_path.h"
 
 namespace render {
@@ -14,13 +13,9 @@ using planet::ElevationStore;
 
 planet::BakeOptions options_for(const Earth& earth, const std::function<void(std::string_view, double)>& progress) {
     planet::BakeOptions options;
-    options.undulation = [geoid = earth.geoid](std::span<const glm::dvec3> normals,
-                                               std::span<planet::GeoidUndulation> out) {
-        geoid->undulations(normals, out);
-    };
-    options.undulation_name = earth.geoid->description();
+    set_geoid(options, earth.geoid);
     options.progress = progress;
-    options.memory_bytes = std::size_t{4} << 30;
+    options.replace = true;  // what another process of the same number may have left
     return options;
 }
 
@@ -29,18 +24,27 @@ std::shared_ptr<const ElevationStore> bake_to(const std::filesystem::path& file,
                                               const planet::BakeOptions& options) {
     std::filesystem::path temporary = file;
     temporary += "." + std::to_string(::getpid()) + ".baking";
-    std::error_code ignored;
     try {
         planet::bake(*earth.heights, options, temporary);
         std::filesystem::rename(temporary, file);
         return std::make_shared<const ElevationStore>(ElevationStore::open(file));
     } catch (const std::exception&) {
-        std::filesystem::remove(temporary, ignored);
+        std::error_code ignored;
+        for (const char* ending : {"", "-journal", "-finishing", "-finishing-journal"})
+            std::filesystem::remove(temporary.native() + ending, ignored);
         return nullptr;
     }
 }
 
 }  // namespace
+
+void set_geoid(planet::BakeOptions& options, std::shared_ptr<const planet::Geoid> geoid) {
+    options.undulation_name = geoid->description();
+    options.undulation = [geoid = std::move(geoid)](std::span<const glm::dvec3> normals,
+                                                    std::span<planet::GeoidUndulation> out) {
+        geoid->undulations(normals, out);
+    };
+}
 
 std::shared_ptr<const ElevationStore> open_earth_store(const EarthSources& sources, LazyEarth& earth,
                                                        ChecksumIndex& index,

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "planet/store/elevation_store.h"
+#include "planet/store/bake.h"
 #include "render/app/earth.h"
 
 namespace render {
@@ -25,6 +25,9 @@ class LazyEarth {
     const EarthSources& sources_;
     std::optional<Earth> earth_;
 };
+
+/// Heights above a geoid are baked with its undulations.
+void set_geoid(planet::BakeOptions& options, std::shared_ptr<const planet::Geoid> geoid);
 
 /// The store of these sources, under a name made of their checksums and the format's version. It is baked beside its
 /// place and renamed, so a store that is there is whole; where there is no cache folder, or it is full, it is kept in memory.

@@ -81,22 +81,4 @@ void report_mesh(const planet::SurfaceMesh& mesh, const planet::MeshReference& r
     report.set("vertical_datum", reference.vertical_datum);
 }
 
-std::string grouped(std::size_t number) {
-    std::string text = std::to_string(number);
-    for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, " ");
-    return text;
-}
-
-std::string four_digits(double number) {
-    if (!(number >= 1e-6)) return "0";  // a micrometre: the rounding of sums
-    if (!std::isfinite(number)) return "infinite";
-    const int exponent = static_cast<int>(std::floor(std::log10(number)));
-    // What exceeds a digit by less than a thousandth of it is taken for the rounding of sums.
-    const double last = std::pow(10.0, exponent - 3), rounded = std::ceil(number / last - 1e-3) * last;
-    if (exponent >= 3) return grouped(static_cast<std::size_t>(std::llround(rounded)));
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", rounded);
-    return text;
-}
-
 }  // namespace render

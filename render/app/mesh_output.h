@@ -5,6 +5,7 @@
 #include <string>
 
 #include "planet/exporters/mesh_file.h"
+#include "render/app/figures.h"
 #include "render/app/mesh_options.h"
 #include "render/picture/mesh_picture.h"
 
@@ -39,10 +40,5 @@ class MeshOutput {
 
 /// triangles, vertices, strip_indices, frame, crs, vertical_datum.
 void report_mesh(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference, Report& report);
-
-/// "12 345"
-std::string grouped(std::size_t number);
-/// "19.84": a number >= 0 for people, at most four digits that count, the last one rounded up: "at most" stays true.
-std::string four_digits(double number);
 
 }  // namespace render

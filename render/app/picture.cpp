@@ -1,23 +1,20 @@
 #include "render/app/picture.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <future>
-#include <mutex>
-#include <thread>
+#include <set>
 
-#include "planet/elevation/image_io.h"
 #include "planet/geodesy/earth_rotation.h"
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/sun.h"
 #include "planet/mesh/segments.h"
-#include "planet/octahedron/cell_metrics.h"
-#include "planet/store/store_field.h"
-#include "planet/store/store_tiles.h"
+#include "render/app/band_writer.h"
 #include "render/app/data_path.h"
+#include "render/app/drawn_surface.h"
 #include "render/app/earth_store.h"
 #include "render/app/imagery.h"
+#include "render/app/steps.h"
 #include "render/gl/framebuffer.h"
 #include "render/passes/overlay.h"
 #include "render/passes/sky.h"
@@ -39,146 +36,11 @@ constexpr int finest_patch_above = 10;
 constexpr double highest_ground_m = 9000;
 constexpr std::size_t patch_limit = 1800;
 
-/// Adds up the time of steps, also of those that run side by side: their sum can exceed the time of the whole.
-class Steps {
-  public:
-    template <class Work>
-    auto time(std::string_view name, Work&& work) {
-        struct Stop {
-            Steps& steps;
-            std::string_view name;
-            std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-            ~Stop() {
-                steps.add(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-            }
-        } const stop{*this, name};
-        return work();
-    }
-    /// Sorted by name: which of two came first is chance.
-    std::vector<std::pair<std::string, double>> list() const {
-        const std::lock_guard lock(mutex_);
-        auto sorted = list_;
-        std::sort(sorted.begin(), sorted.end());
-        return sorted;
-    }
-
-  private:
-    void add(std::string_view name, double seconds) {
-        const std::lock_guard lock(mutex_);
-        const auto found =
-            std::find_if(list_.begin(), list_.end(), [&](const auto& step) { return step.first == name; });
-        if (found == list_.end())
-            list_.emplace_back(name, seconds);
-        else
-            found->second += seconds;
-    }
-
-    mutable std::mutex mutex_;
-    std::vector<std::pair<std::string, double>> list_;
-};
-
-unsigned threads_of(const RenderOptions& options) {
-    return options.threads > 0 ? static_cast<unsigned>(options.threads)
-                               : std::max(1u, std::thread::hardware_concurrency());
-}
-
-/// Starts work beside the calling thread, or with one thread only leaves it until it is asked for. What it throws comes
-/// out of get(); the future's end waits for it, so what it refers to must be declared before the future.
-template <class Work>
-auto beside(unsigned threads, Work work) {
-    return std::async(threads > 1 ? std::launch::async : std::launch::deferred, std::move(work));
-}
-
-/// The output, encoded beside the drawing: one band behind.
-class BandWriter {
-  public:
-    BandWriter(const RenderOptions& options, Steps& steps)
-        : threads_(threads_of(options)),
-          steps_(steps),
-          writer_(options.output.string(), options.size.width, options.size.height, 3, planet::SampleType::uint8) {}
-
-    /// @param band rows of RGB, top down
-    void write(std::vector<std::uint8_t> band, int rows) {
-        if (writing_.valid()) writing_.get();
-        writing_ = beside(threads_, [this, rows, pixels = std::move(band)] {
-            steps_.time("write", [&] { writer_.write_rows(pixels.data(), rows); });
-        });
-    }
-    /// Makes the file appear.
-    void finish() {
-        if (writing_.valid()) writing_.get();
-        steps_.time("write", [&] { writer_.finish(); });
-    }
-
-  private:
-    unsigned threads_;
-    Steps& steps_;
-    planet::ImageWriter writer_;
-    std::future<void> writing_;
-};
-
 /// What a part is drawn from.
 struct PartMesh {
     planet::Segments segments;
     ReliefPatches patches;
 };
-
-/// The surface that is drawn.
-struct Surface {
-    std::shared_ptr<const planet::ElevationStore> store;
-    planet::StoreField field;
-    planet::StoreTiles tiles;
-
-    Surface(std::shared_ptr<const planet::ElevationStore> s, double exaggeration)
-        : store(s), field(s), tiles(field.cache(), {store->metadata().ellipsoid, exaggeration}) {}
-
-    PatchSurface for_patches() const {
-        return {.heights = [this](auto normals, auto heights) { field.heights(normals, heights); },
-                .spacing =
-                    [this](const glm::dvec3& normal) {
-                        planet::SurfaceCursor cursor = field.cursor();
-                        cursor.seek(normal);
-                        return planet::cell_metrics(cursor.cell().bisection_level()).vertex_spacing *
-                               wgs84.mean_radius();
-                    }};
-    }
-
-    /// A ball below all terrain, m.
-    double occluder_radius(double exaggeration) const {
-        double lowest = 0;
-        for (int face = 0; face < planet::face_count; ++face)
-            if (const auto tile = field.cache().tile(planet::LocationCode::face_root(face)))
-                lowest = std::min(lowest, static_cast<double>(tile->min_height) * exaggeration);
-        return store->metadata().ellipsoid.b + lowest - 120;  // the geoid goes down to -107 m
-    }
-};
-
-/// Distance from the ground from which the planet and its air fill most of the picture's shorter side, m.
-double whole_globe_range(double fov) {
-    return (wgs84.a + 60e3) / std::sin(0.5 * 0.94 * fov) - wgs84.a;
-}
-
-Camera camera_for(const RenderOptions& o, const planet::StoreField& field) {
-    const glm::dvec3 n = planet::normal_from_geodetic(o.at.latitude, o.at.longitude);
-    const planet::Geoid geoid(data_file("egm96-15.pgm"));
-    const auto ground_at = [&](const glm::dvec3& normal) {
-        return static_cast<double>(field.height(normal)) * o.exaggeration + geoid.undulation(normal).m;
-    };
-    const double ground = ground_at(n);
-    glm::dvec3 eye;
-    if (o.height) {
-        eye = planet::ecef_from_normal(wgs84, n, {ground + *o.height});
-    } else {
-        const double range = o.range.value_or(whole_globe_range(o.fov));
-        eye = planet::ecef_from_normal(wgs84, n, {ground}) - range * look_direction(n, o.heading, o.pitch);
-        // A shallow view can start inside a mountain: the eye then stands on it.
-        const planet::NormalPosition p = planet::position_from_ecef(wgs84, eye);
-        const double floor = ground_at(p.normal) + std::min(2.0, range);
-        if (p.h.m < floor) eye = planet::ecef_from_normal(wgs84, p.normal, {floor});
-    }
-    return make_camera(eye, n, o.heading, o.pitch, focal_length_px(o.fov, o.size.width, o.size.height), o.size.width,
-                       o.size.height);
-}
 
 /// All that is the same for every part of the picture. Beside the thread of OpenGL, which opens the context, compiles
 /// shaders and uploads, run: the tables that do not depend on the view from the start; the air of the view and the first
@@ -189,15 +51,15 @@ class Painter {
         : options_(options),
           report_(report),
           steps_(steps),
-          threads_(threads_of(options)),
+          threads_(options.thread_count()),
           noise_(beside(threads_, [this] { return steps_.time("noise", [] { return make_noise_levels(); }); })),
           tables_(beside(threads_, [this] { return steps_.time("air", [] { return make_tables(); }); })),
           context_(steps_.time("context", [&] { return Context::create({.backend = options.backend}); })),
           earth_(options.earth),
           index_(user_checksum_index()),
           surface_(steps_.time("store", [&] { return open_store(); }), options.exaggeration),
-          camera_(steps_.time("store", [&] { return camera_for(options, surface_.field); })),
-          occluder_radius_(surface_.occluder_radius(options.exaggeration)) {
+          camera_(steps_.time("store", [&] { return surface_.camera(options); })),
+          occluder_radius_(surface_.occluder_radius()) {
         for (int y = 0; y < camera_.height; y += part_side)
             for (int x = 0; x < camera_.width; x += part_side)
                 parts_.push_back(
@@ -279,9 +141,10 @@ class Painter {
         view.finest_patch_level = std::max(surface_.store->metadata().finest_level - finest_patch_above, 0);
         view.segment_angle = patch_pixels / camera_.focal_px;
         const auto detailed = [&] {
-            return static_cast<std::size_t>(std::count_if(mesh.segments.segments().begin(),
-                                                          mesh.segments.segments().end(),
-                                                          [](const planet::Segment& s) { return s.detailed; }));
+            std::set<planet::LocationCode> patches;
+            for (const planet::Segment& s : mesh.segments.segments())
+                if (s.detailed) patches.insert(s.patch);
+            return patches.size();
         };
         do {
             steps_.time("mesh", [&] { mesh.segments.build(surface_.tiles, view, static_cast<int>(threads_)); });
@@ -302,13 +165,12 @@ class Painter {
             overlay_->upload(segments);
             patch_texture_ = patches.upload();
         });
-        report_.triangles += segments.leaf_levels().size();
-        report_.vertices += segments.vertices().size();
-        report_.strip_indices += segments.indices().size();
+        report_.triangles += segments.leaf_count();
+        report_.vertices += segments.vertex_count();
+        report_.strip_indices += segments.index_count();
         report_.deviation_max_m = std::max(report_.deviation_max_m, segments.deviation_max_m());
         report_.pixel_deviation_max =
             std::max(report_.pixel_deviation_max, segments.ratio_max() * options_.max_pixel_deviation);
-        report_.damaged = report_.damaged || segments.damaged();
     }
 
     void paint_part(const PicturePart& part, std::vector<std::uint8_t>& band) {
@@ -344,6 +206,7 @@ class Painter {
 
     void fill_report() {
         report_.tiles = surface_.tiles.count();
+        report_.damage = surface_.field.cache().damage();
         report_.eye_height_m = planet::height_from_ecef(wgs84, camera_.eye).m;
         report_.crs = "EPSG:4978";
         report_.vertical_datum = planet::name_of(surface_.store->metadata().datum);
@@ -362,7 +225,7 @@ class Painter {
     Context context_;
     LazyEarth earth_;
     ChecksumIndex index_;
-    Surface surface_;
+    DrawnSurface surface_;
     Camera camera_;
     double occluder_radius_;
     Texture day_, night_, relief_, patch_texture_;

@@ -15,12 +15,12 @@ struct PictureReport {
     std::uint64_t triangles = 0;
     std::uint64_t vertices = 0;
     std::uint64_t strip_indices = 0;
-    std::uint64_t tiles = 0;         ///< elevation tiles in use
-    double deviation_max_m = 0;      ///< largest certified deviation of a drawn cell
-    double pixel_deviation_max = 0;  ///< pixels, certified, over the picture
-    double eye_height_m = 0;         ///< above the ellipsoid
-    bool damaged = false;            ///< a tile could not be read, and its parent stood in for it
-    std::string crs;                 ///< of what is drawn, e.g. "EPSG:4979"
+    std::uint64_t tiles = 0;          ///< elevation tiles in use
+    double deviation_max_m = 0;       ///< largest certified deviation of a drawn cell
+    double pixel_deviation_max = 0;   ///< pixels, certified, over the picture
+    double eye_height_m = 0;          ///< above the ellipsoid
+    std::vector<std::string> damage;  ///< a line for each tile that could not be read; its parent stood in for it
+    std::string crs;                  ///< of what is drawn, e.g. "EPSG:4979"
     std::string vertical_datum;
     std::vector<planet::SourceInfo> sources;
     std::string backend;  ///< the way in that was taken, never "auto"

@@ -17,7 +17,8 @@
 #include <string>
 #include <vector>
 
-#define OCTAGLOBE_COMMANDS(command) command(render) command(mesh) command(query) command(check) command(info)
+#define OCTAGLOBE_COMMANDS(command) \
+    command(render) command(bake) command(mesh) command(query) command(check) command(verify) command(info)
 
 namespace render {
 

@@ -11,7 +11,13 @@ namespace render {
 Progress::Progress() : terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
+    clear();
+}
+
+void Progress::clear() {
+    const std::lock_guard lock(mutex_);
     if (shown_) std::fputs("\r\033[K", stderr);
+    shown_ = false;
 }
 
 void Progress::update(std::string_view step, double fraction) {
@@ -21,11 +27,20 @@ void Progress::update(std::string_view step, double fraction) {
     if (shown_ && now - last_ < std::chrono::milliseconds(50)) return;
     last_ = now;
     shown_ = true;
-    const int length = static_cast<int>(step.size());
-    if (std::isnan(fraction))
-        std::fprintf(stderr, "\r\033[K%.*s ...", length, step.data());
-    else
-        std::fprintf(stderr, "\r\033[K%.*s %3.0f %%", length, step.data(), 100 * std::clamp(fraction, 0.0, 1.0));
+    if (step != step_) {
+        step_ = step;
+        left_ = {};
+    }
+    std::string line = step_;
+    if (std::isnan(fraction)) {
+        line += " ...";
+    } else {
+        const double done = std::clamp(fraction, 0.0, 1.0);
+        line += " " + std::to_string(static_cast<int>(100 * done)) + " %";
+        const auto left = left_.update(std::chrono::duration<double>(now - start_).count(), done);
+        if (left) line += ", " + duration_text(*left) + " left";
+    }
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
     std::fflush(stderr);
 }
 

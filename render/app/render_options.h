@@ -2,12 +2,14 @@
 // What a picture is of: everything `octaglobe render` can be told. The same options give the same bytes, so nothing in
 // here may default to the clock, the machine or chance.
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "planet/frames.h"
@@ -64,6 +66,10 @@ struct RenderOptions {
     /// Told how far a step is, 0..1 or NaN, from any thread. Never null.
     std::function<void(std::string_view step, double fraction)> progress = [](std::string_view, double) {};
 
+    /// `threads`, with 0 resolved: at least 1.
+    unsigned thread_count() const {
+        return threads > 0 ? static_cast<unsigned>(threads) : std::max(1u, std::thread::hardware_concurrency());
+    }
     bool shows(Overlay overlay) const { return (show & static_cast<std::uint32_t>(overlay)) != 0; }
 };
 

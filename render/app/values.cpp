@@ -101,6 +101,27 @@ double parse_distance(std::string_view where, std::string_view text, Range range
     return *value * unit->m;
 }
 
+std::size_t parse_memory(std::string_view where, std::string_view text, std::size_t low, std::size_t high) {
+    constexpr std::string_view letters = "KMGT";
+    const auto mebi = [](std::size_t bytes) { return std::to_string(bytes >> 20) + "MiB"; };
+    const std::string accepted = mebi(low) + " to " + mebi(high) + ", as 512MiB, 1.5GiB or 2000MB";
+    std::string_view rest = trimmed(text);
+    const auto value = take_number(rest);
+    rest = trimmed(rest);
+    double factor = 1;
+    if (const auto power = rest.empty() ? rest.npos : letters.find(rest.front()); power != letters.npos) {
+        rest.remove_prefix(1);
+        factor = std::pow(rest == "B" ? 1000.0 : 1024.0, static_cast<double>(power + 1));
+        if (rest == "iB") rest = {};
+    }
+    if (rest == "B") rest = {};
+    if (!value || !rest.empty())
+        throw Error(Fault::bad_usage, where, shown(text) + " is not an amount of memory", accepted);
+    if (!within(*value * factor, {static_cast<double>(low), static_cast<double>(high)}))
+        throw Error(Fault::bad_usage, where, shown(text) + " is out of range", accepted);
+    return static_cast<std::size_t>(*value * factor);
+}
+
 planet::Geodetic parse_place(std::string_view where, std::string_view text) {
     constexpr std::string_view accepted = "LAT,LON in degrees, latitude -90 to 90, longitude -180 to 360";
     std::string_view rest = trimmed(text);

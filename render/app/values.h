@@ -27,6 +27,10 @@ long parse_whole(std::string_view where, std::string_view text, long low, long h
 /// @param range metres
 double parse_distance(std::string_view where, std::string_view text, Range range);
 
+/// An amount of memory with an optional unit (B, KB, MB, GB, TB of 1000; KiB, MiB, GiB, TiB or K, M, G, T of 1024;
+/// none: bytes): "512MiB", "1.5 G".
+std::size_t parse_memory(std::string_view where, std::string_view text, std::size_t low, std::size_t high);
+
 /// "LAT,LON" in degrees to radians, h = 0. Latitude -90..90; longitude -180..360, wrapped to [-pi, pi].
 planet::Geodetic parse_place(std::string_view where, std::string_view text);
 

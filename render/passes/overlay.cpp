@@ -14,7 +14,7 @@ struct OverlayVertex {
 // In a strip the curve enters triangle (a, b, c) through side a-b and leaves it through b-c: b is its pivot.
 std::vector<OverlayVertex> expand(const planet::Segments& segments) {
     std::vector<OverlayVertex> list;
-    list.reserve(segments.leaf_levels().size() * 3);
+    list.reserve(segments.leaf_count() * 3);
     for (const planet::Segment& s : segments.segments()) {
         std::size_t leaf = s.first_leaf;
         const std::uint32_t* index = segments.indices().data() + s.first_index;

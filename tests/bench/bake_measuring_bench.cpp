@@ -8,6 +8,7 @@
 
 #include "bake_scene.h"
 #include "planet/mesh/saturation.h"
+#include "planet/store/coverage.h"
 #include "planet/store/sample_distance.h"
 
 namespace {
@@ -96,7 +97,7 @@ void deviations_from_one_plane(benchmark::State& state) {
 }
 BENCHMARK(deviations_from_one_plane)->Unit(benchmark::kMillisecond);
 
-// All cells and all radii that a leaf tile starts from. Baseline: one after the other.
+// All cells and all radii that a leaf tile starts from. Baseline: radii cell by cell.
 void leaf_records(benchmark::State& state) {
     const auto& scene = bake_scene();
     const auto& all = lattices();
@@ -113,22 +114,22 @@ void leaf_records(benchmark::State& state) {
 }
 BENCHMARK(leaf_records)->Unit(benchmark::kMillisecond);
 
-void leaf_records_one_after_the_other(benchmark::State& state) {
+void leaf_records_cell_by_cell(benchmark::State& state) {
     const auto& scene = bake_scene();
     const auto& all = lattices();
     std::vector<float> deviation, radius;
     for (auto _ : state)
         for (std::size_t t = 0; t < all.size(); ++t) {
-            const auto& exists = scene.leaves[t]->exists;
-            deviation.resize(exists.size());
-            radius.resize(exists.size());
+            const unsigned cells = 1u << all[t].depth();
+            deviation.resize(cells);
+            radius.resize(cells);
             own_deviation(all[t], deviation);
-            corner_radii(all[t], exists, false, {}, radius);
+            for (unsigned i = cells / 2; i < cells; ++i) radius[i] = certified_radius(corner_distance(all[t], i));
             benchmark::DoNotOptimize(radius.data());
         }
     count_vertices(state, scene.leaf_vertices);
 }
-BENCHMARK(leaf_records_one_after_the_other)->Unit(benchmark::kMillisecond);
+BENCHMARK(leaf_records_cell_by_cell)->Unit(benchmark::kMillisecond);
 
 // Records that are saturated already stay as they are: the same work every time. Baseline: a record at a time.
 void saturation(benchmark::State& state) {
@@ -154,12 +155,15 @@ void saturation_by_record(benchmark::State& state) {
     for (auto _ : state)
         for (std::size_t t = 0; t < all.size(); ++t) {
             Tile tile = scene.leaves[t]->tile;
-            const Saturation s{layout,      tile.depth,       tile.deviation,
-                               tile.radius, all[t].rounded(), scene.leaves[t]->exists};
-            for (unsigned first = 1u << (tile.depth - 1); first > 0; first >>= 1) {
-                for (unsigned i = first; i < 2 * first; ++i) s.raise(i);
-                for (unsigned i = first; i < 2 * first; ++i)
-                    if (const unsigned beyond = layout.split_neighbor[i]; i < beyond) s.join(i, beyond);
+            for (unsigned i = 1u << (tile.depth - 1); i-- > 1;) {
+                const glm::vec3& m = all[t].rounded()[layout.split_vertex[i]];
+                double reach = 0;
+                for (unsigned child = 2 * i; child < 2 * i + 2; ++child) {
+                    tile.deviation[i] = std::max(tile.deviation[i], tile.deviation[child]);
+                    const glm::vec3& below = all[t].rounded()[layout.split_vertex[child]];
+                    reach = std::max(reach, radius_over(m, below, tile.radius[child]));
+                }
+                tile.radius[i] = std::max(tile.radius[i], certified_radius(reach));
             }
             benchmark::DoNotOptimize(tile.radius.data());
         }

@@ -268,7 +268,7 @@ TEST(Bake, RefusesWhatNeedsTooMuchMemory) {
         EXPECT_EQ(e.fault(), Fault::bad_usage);
         EXPECT_NE(std::string(e.what()).find("1 MiB"), std::string::npos) << e.what();
     }
-    o.memory_bytes = std::size_t{64} << 20;
+    o.memory_bytes = std::size_t{8} << 20;
     EXPECT_THROW(bake_in_memory(BumpyField(0, {}, 0), o), Error);  // "as fine as you like"
 }
 

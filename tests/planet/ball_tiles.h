@@ -38,6 +38,12 @@ class BallTiles final : public TileSource {
         return slot.get();
     }
 
+    /// The tile comes or goes, for walks: the one above says whether it is there.
+    void set_there(LocationCode root, bool there) {
+        PlacedTile& above = *tiles_.at(root.ancestor(root.bisection_level() - tile_levels).bits());
+        above.set_child(static_cast<unsigned>(root.bits() & (tile_cells - 1)), there ? tile(root) : nullptr);
+    }
+
     std::size_t tile_count() const { return tiles_.size(); }
 
     /// The bounds of levels 0 .. finest_level - 1.

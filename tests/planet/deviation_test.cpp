@@ -7,7 +7,6 @@
 #include <set>
 
 #include "planet/mesh/saturation.h"
-#include "planet/store/baked_tile.h"
 #include "planet/store/tile_sides.h"
 
 namespace planet {

@@ -148,6 +148,104 @@ TEST(LayeredField, SamplesAreThoseThatShow) {
     EXPECT_NEAR(both.spacing({at_degrees(-10, 10), 0}), degrees * 6378137, 6000);
 }
 
+// 33,000 voids in a rugged DEM, alone and in clumps, over a coarse one that is 400 m off.
+struct HoledDem {
+    static constexpr int size = 1100;
+    static constexpr double step = 0.001;
+    std::vector<bool> holes = std::vector<bool>(size * size);
+    std::vector<std::pair<int, int>> hole_list;
+
+    static double relief(int c, int r) {
+        return 1500 + 300 * std::sin(c * 0.05) * std::cos(r * 0.04) + 20 * std::sin(c * 0.9 + r);
+    }
+
+    explicit HoledDem(std::size_t count, unsigned clumps) {
+        std::mt19937 random(3);
+        const auto punch = [&](int c, int r) {
+            if (c < 0 || r < 0 || c >= size || r >= size || holes[static_cast<std::size_t>(r * size + c)]) return;
+            holes[static_cast<std::size_t>(r * size + c)] = true;
+            hole_list.emplace_back(c, r);
+        };
+        while (hole_list.size() < count) {
+            const int c = static_cast<int>(random() % size), r = static_cast<int>(random() % size);
+            const int reach = random() % clumps == 0 ? 3 : 0;
+            for (int j = -reach; j <= reach; ++j)
+                for (int i = -reach; i <= reach; ++i) punch(c + i, r + j);
+        }
+    }
+    std::shared_ptr<const RasterField> field() const {
+        return field_of(make_raster(size, size, {10, 47}, step, [this](int c, int r) {
+            return holes[static_cast<std::size_t>(r * size + c)] ? nan : relief(c, r);
+        }));
+    }
+    static glm::dvec3 place(double c, double r) { return at_degrees(47 - step * r, 10 + step * c); }
+};
+
+TEST(LayeredField, ThirtyThreeThousandVoidsGiveNoSpike) {
+    const HoledDem dem(33000, 40);
+    const auto fine = dem.field();
+    const auto world =
+        field_of(make_raster(40, 40, {8, 48.5}, 0.1, [](int c, int r) { return 1900 + 3.0 * c - 2.0 * r; }));
+    const LayeredField both({world, fine}, VerticalDatum::egm96);
+    std::vector<glm::dvec3> n;
+    std::vector<double> low, high;
+    for (const auto& [c, r] : dem.hole_list) {
+        double least = 1e9, most = -1e9;
+        for (int j = std::max(r - 4, 0); j <= std::min(r + 4, HoledDem::size - 1); ++j)
+            for (int i = std::max(c - 4, 0); i <= std::min(c + 4, HoledDem::size - 1); ++i) {
+                least = std::min(least, HoledDem::relief(i, j));
+                most = std::max(most, HoledDem::relief(i, j));
+            }
+        for (const double off : {-0.45, 0.0, 0.4}) {
+            n.push_back(HoledDem::place(c + off, r - off));
+            low.push_back(least);
+            high.push_back(most);
+        }
+    }
+    std::vector<float> h(n.size());
+    both.heights(n, h);
+    double worst = 0, sum = 0;
+    for (std::size_t i = 0; i < n.size(); ++i) {
+        ASSERT_TRUE(std::isfinite(h[i]));
+        const double above = std::max({static_cast<double>(h[i]) - high[i], low[i] - static_cast<double>(h[i]), 0.0});
+        worst = std::max(worst, above);
+        sum += above;
+    }
+    // Beyond what is around by no more than the pull of borders elsewhere; unblended it would be 400 m and more.
+    EXPECT_LT(worst, 60);
+    EXPECT_LT(sum / static_cast<double>(n.size()), 2);
+}
+
+TEST(LayeredField, ABlendInRegionsIsTheWholeBlend) {
+    HoledDem dem(80000, 4000);
+    std::sort(dem.hole_list.begin(), dem.hole_list.end());
+    const auto fine = dem.field();
+    ASSERT_GT(fine->border_size(), 1u << 19);
+    const auto world =
+        field_of(make_raster(200, 200, {9, 48}, 0.02, [](int c, int r) { return 1900 + 3.0 * c - 2.0 * r; }));
+    const LayeredField both({world, fine}, VerticalDatum::egm96, {}, 6378137, std::size_t{8} << 20);
+    std::vector<glm::dvec3> border;
+    fine->border({{0, 0, 1}, 4}, 1, border);
+    std::vector<BorderBlend::Point> points;
+    const double reach = 2 * world->spacing({HoledDem::place(0, 0), 0}) / 6378137;
+    for (const glm::dvec3& p : border)
+        points.push_back({p, static_cast<double>(fine->height(p)) - static_cast<double>(world->height(p)), reach});
+    const BorderBlend whole(points, 0.36 * fine->spacing({border[0], 1e-6}) / 6378137);
+    double worst = 0;
+    for (std::size_t i = 0; i < dem.hole_list.size() / 8; i += 5) {
+        const glm::dvec3 p = HoledDem::place(dem.hole_list[i].first, dem.hole_list[i].second);
+        const double expected = static_cast<double>(world->height(p)) + whole(p);
+        worst = std::max(worst, std::abs(static_cast<double>(both.height(p)) - expected));
+    }
+    for (double along = -50; along < 600; along += 3.7) {  // outside, through the regions around the DEM
+        const glm::dvec3 p = HoledDem::place(along, -20 - 0.1 * along);
+        const double expected = static_cast<double>(world->height(p)) + whole(p);
+        if (std::isnan(fine->height(p)))
+            worst = std::max(worst, std::abs(static_cast<double>(both.height(p)) - expected));
+    }
+    EXPECT_LT(worst, 3);  // clusters of points count as one, and are not the same ones
+}
+
 // Steep coasts: an island of 3000 m cliffs, land below sea level, a lagoon.
 TEST(SurfaceField, WaterIsFlatAndNothingSinksBelowIt) {
     const auto land = [](int c, int r) {

@@ -125,7 +125,7 @@ TEST(RasterField, AVoidIsItsPixelAndLeavesTheRestSmooth) {
             ASSERT_NEAR(at(y, x - 1e-5), at(y, x + 1e-5), 2e-3) << x << " " << y;
         }
     std::vector<glm::dvec3> border;
-    field.border(border);
+    field.border({{0, 0, 1}, 4}, 1, border);
     EXPECT_EQ(border.size(), 2u * (4 * 21 + 4));
     for (const glm::dvec3& n : border) EXPECT_TRUE(std::isfinite(field.height(n)));
 }
@@ -183,7 +183,7 @@ TEST(RasterField, AGlobalRasterIsSmoothAcrossTheAntimeridianAndThePoles) {
         for (double latitude = -89.9; latitude < 90; latitude += 3.3)
             ASSERT_NEAR(at_degrees(field, latitude, 180 - 1e-7), at_degrees(field, latitude, -180 + 1e-7), 1e-3);
         std::vector<glm::dvec3> border;
-        field.border(border);
+        field.border({{0, 0, 1}, 4}, 1, border);
         EXPECT_TRUE(border.empty());
     }
 }

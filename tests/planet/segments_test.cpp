@@ -66,7 +66,7 @@ TEST(Segments, AreTheClosedMeshBitForBit) {
         std::sort(want.begin(), want.end());
         Segments segments;
         segments.build(tiles, view);
-        EXPECT_EQ(segments.leaf_levels().size(), mesh.triangles.size());
+        EXPECT_EQ(segments.leaf_count(), mesh.triangles.size());
         EXPECT_TRUE(triangles_of(segments) == want);
         EXPECT_GT(segments.segments().size(), 8u);
     }
@@ -160,7 +160,7 @@ TEST(Segments, CullingKeepsEverythingInTheFrustumAboveTheHorizon) {
         view.culling.occluder_radius = 6356752.0 - 3000 - 1;
         culled.build(tiles, view);
         const auto kept = triangles_of(culled);
-        EXPECT_LE(kept.size(), all.leaf_levels().size());
+        EXPECT_LE(kept.size(), all.leaf_count());
         std::size_t shown = 0;
         for (const Triangle& t : triangles_of(all)) {
             bool seen = false;

@@ -41,7 +41,7 @@ class ProjTransform : public CoordinateTransform {
 };
 
 // 25 places all over the raster, the middle and the corners among them.
-std::vector<glm::dvec2> places_on(const Raster& raster) {
+std::vector<glm::dvec2> places_on(const RasterHeader& raster) {
     std::vector<glm::dvec2> xy;
     for (int j = 0; j <= 4; ++j)
         for (int i = 0; i <= 4; ++i)
@@ -83,10 +83,24 @@ double metres_per_height(const OGRSpatialReference* crs) {
     return metres > 0 ? metres : 1;
 }
 
-void set_crs(Raster& raster, OGRSpatialReference& crs, const std::string& path) {
+std::string vertical_of(const OGRSpatialReference* crs) {
+    if (!crs || crs->IsEmpty() || crs->IsLocal()) return {};
+    if (!crs->IsCompound()) return crs->GetAxesCount() == 3 ? "ellipsoid" : "";
+    const char* const type = crs->GetAttrValue("VERT_DATUM", 1);
+    if (type && std::string_view(type) == "2002") return "ellipsoid";  // WKT 1: a height above the ellipsoid
+    const char* const authority = crs->GetAuthorityName("VERT_CS");
+    const char* const code = crs->GetAuthorityCode("VERT_CS");
+    if (authority && code) return std::string(authority) + ":" + code;
+    for (const char* node : {"VERT_CS", "VERTCRS"})
+        if (const char* name = crs->GetAttrValue(node)) return name;
+    return "an unnamed vertical datum";
+}
+
+void set_crs(RasterHeader& raster, OGRSpatialReference& crs, const std::string& path) {
     const GdalMessages messages;
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     crs.StripVertical();
+    if (crs.GetAxesCount() == 3) crs.DemoteTo2D(nullptr);
     raster.crs = name_of_crs(crs);
     raster.radius_m = crs.GetSemiMajor();
     OGRSpatialReference wgs84;

@@ -17,9 +17,13 @@ Transformation make_transformation(const OGRSpatialReference& from, const OGRSpa
 /// Metres in a unit of height of a CRS; 1 if it has no vertical part, or is null.
 double metres_per_height(const OGRSpatialReference* crs);
 
+/// What the heights of a CRS are measured from: "EPSG:5773" or a name for a compound one, "ellipsoid" for one with three
+/// axes, else empty. Null gives empty.
+std::string vertical_of(const OGRSpatialReference* crs);
+
 /// Sets crs, radius_m and transform of a raster whose size and grid are set. The transform stays null where x and y are
 /// already longitude and latitude of WGS84 (or of the planet that the CRS is on) to 1e-9 degrees.
 /// Throws Error if PROJ knows no way.
-void set_crs(Raster& raster, OGRSpatialReference& crs, const std::string& path);
+void set_crs(RasterHeader& raster, OGRSpatialReference& crs, const std::string& path);
 
 }  // namespace planet

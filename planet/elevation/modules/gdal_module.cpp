@@ -64,7 +64,7 @@ GDALRasterBand& height_band(GDALDataset& dataset, const std::string& path) {
     return band;
 }
 
-bool fits_longitude_latitude(const Raster& r) {
+bool fits_longitude_latitude(const RasterHeader& r) {
     for (const double column : {-0.5, r.width - 0.5})
         for (const double row : {-0.5, r.height - 0.5}) {
             const glm::dvec2 p = r.grid.crs_from_sample({column, row});
@@ -75,7 +75,7 @@ bool fits_longitude_latitude(const Raster& r) {
 }
 
 // False if the file has none that is of use.
-bool read_grid(GDALDataset& dataset, Raster& raster) {
+bool read_grid(GDALDataset& dataset, RasterHeader& raster) {
     double g[6];
     if (dataset.GetGeoTransform(g) != CE_None) return false;
     raster.grid = {{g[0] + 0.5 * (g[1] + g[2]), g[3] + 0.5 * (g[4] + g[5])}, {g[1], g[4]}, {g[2], g[5]}};
@@ -83,7 +83,8 @@ bool read_grid(GDALDataset& dataset, Raster& raster) {
     return std::isfinite(last.x + last.y) && std::abs(raster.grid.determinant()) > 0;
 }
 
-void read_georeference(GDALDataset& dataset, const RasterOptions& options, const std::string& path, Raster& raster) {
+void read_georeference(GDALDataset& dataset, const RasterOptions& options, const std::string& path,
+                       RasterHeader& raster) {
     if (!read_grid(dataset, raster)) {
         if (!options.plain)
             throw Error(Fault::bad_data, path, "has no georeference (or only control points)", one_band);
@@ -111,7 +112,7 @@ void read_georeference(GDALDataset& dataset, const RasterOptions& options, const
     } catch (const Error&) {
         if (!options.plain) throw;
         raster.crs.clear();
-        raster.radius_m = Raster().radius_m;
+        raster.radius_m = RasterHeader().radius_m;
         raster.plain = true;
     }
 }
@@ -129,106 +130,196 @@ double metres_per_unit(GDALDataset& dataset, GDALRasterBand& band) {
 
 int reduction_for(int width, int height, const RasterOptions& options, const std::string& path) {
     const auto size = [&](int n) { return std::int64_t{width / n} * std::int64_t{height / n}; };
-    if (size(1) <= options.max_samples) return 1;
-    const std::string text = std::to_string(width) + "x" + std::to_string(height);
-    if (!options.reduce)
-        throw Error(Fault::bad_data, path, text + " samples are too many",
-                    "at most " + std::to_string(options.max_samples) + " samples; cut or reduce it");
+    if (!options.reduce || size(1) <= options.max_samples) return 1;
     int n = 3;
     while (size(n) > options.max_samples && n < std::min(width, height) - 2) n += 2;
-    if (size(n) > options.max_samples) throw Error(Fault::bad_data, path, text + " samples cannot be reduced enough");
+    if (size(n) > options.max_samples)
+        throw Error(Fault::bad_data, path,
+                    std::to_string(width) + "x" + std::to_string(height) + " samples cannot be reduced enough");
     return n;
 }
 
-// Reads rows and turns them into marked samples, in pieces of about a million.
-class SampleReader {
+// Windows of the height band as marked samples.
+class GdalReader : public RasterReader {
   public:
-    SampleReader(GDALRasterBand& band, int reduction, const std::string& path, const GdalMessages& messages)
-        : band_(band), reduction_(reduction), path_(path), messages_(messages) {
+    GdalReader(const std::string& path, const RasterOptions& options, const GdalMessages& messages)
+        : path_(path), options_(options), dataset_(planet::open(path, messages)), band_(height_band(*dataset_, path)) {
+        reduction_ = reduction_for(band_.GetXSize(), band_.GetYSize(), options, path);
+        const double unit = metres_per_unit(*dataset_, band_);
+        scale_ = band_.GetScale() * unit;
+        offset_ = band_.GetOffset() * unit;
+        if (!std::isfinite(scale_) || scale_ == 0 || !std::isfinite(offset_))
+            throw Error(Fault::bad_data, path, "has no usable scale and offset");
         int has = 0;
-        nodata_ = band.GetNoDataValue(&has);
+        nodata_ = band_.GetNoDataValue(&has);
         has_nodata_ = has != 0;
-        masked_ = (band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0;
+        masked_ = (band_.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0;
     }
 
-    void read(Raster& raster) {
+    RasterHeader header() const override {
+        const GdalMessages quiet;
+        RasterHeader raster;
+        const int n = reduction_;
+        raster.width = band_.GetXSize() / n;
+        raster.height = band_.GetYSize() / n;
+        raster.reduction = n;
+        raster.vertical_crs = vertical_of(dataset_->GetSpatialRef());
+        read_georeference(*dataset_, options_, path_, raster);
+        raster.grid.origin = raster.grid.crs_from_sample(glm::dvec2(0.5 * (n - 1)));
+        raster.grid.per_column *= n;
+        raster.grid.per_row *= n;
+        raster.scale = scale_;
+        raster.offset = offset_;
+        return raster;
+    }
+
+    std::vector<std::string> files() const override {
+        const GdalMessages quiet;
+        std::vector<std::string> files;
+        if (char** list = dataset_->GetFileList()) {
+            for (int i = 0; list[i]; ++i) files.emplace_back(list[i]);
+            CSLDestroy(list);
+        }
+        return files;
+    }
+
+    bool may_be_shorts() const override {
         const GDALDataType type = band_.GetRasterDataType();
-        const bool small = type == GDT_Byte || type == GDT_Int16 || type == GDT_UInt16;
-        if (small && read_all<std::int32_t, std::int16_t>(raster, GDT_Int32)) return;
-        if (small || type == GDT_Float32)
-            read_all<float, float>(raster, GDT_Float32);
+        return type == GDT_Byte || type == GDT_Int16 || type == GDT_UInt16;
+    }
+
+    int natural_columns() const override { return natural_size().x; }
+    int natural_rows() const override { return natural_size().y; }
+
+    std::size_t decoded_bytes(int columns) const override {
+        const auto [width, height] = std::pair(natural_columns(), natural_rows());
+        const auto bytes = static_cast<std::size_t>(GDALGetDataTypeSizeBytes(band_.GetRasterDataType()));
+        const std::string driver = dataset_->GetDriverName();
+        if (driver == "VRT")
+            if (const auto source = first_source()) return source->decoded_bytes(columns);
+        const bool strips = width == band_.GetXSize();
+        if (driver == "GTiff" && strips && !dataset_->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE")) return 0;
+        const int rows = (columns + 2 * height - 2) / height * height;
+        const int across = strips ? width : 2 * ((columns + 2 * width - 2) / width * width);
+        return bytes * static_cast<std::size_t>(rows) * static_cast<std::size_t>(across);
+    }
+
+    bool read(const SampleWindow& window, std::span<std::int16_t> out) override {
+        const GdalMessages messages;
+        if (!may_be_shorts()) return false;
+        if (band_.GetRasterDataType() == GDT_UInt16)
+            return read_pieces<std::int32_t>(window, GDT_Int32, out.data(), messages);
+        return read_pieces<std::int16_t>(window, GDT_Int16, out.data(), messages);
+    }
+
+    void read(const SampleWindow& window, std::span<float> out) override {
+        const GdalMessages messages;
+        if (may_be_shorts() || band_.GetRasterDataType() == GDT_Float32)
+            read_pieces<float>(window, GDT_Float32, out.data(), messages);
         else
-            read_all<double, float>(raster, GDT_Float64);
+            read_pieces<double>(window, GDT_Float64, out.data(), messages);
     }
 
   private:
-    // False if a value does not fit the storage.
+    // Of a virtual raster: one of the files that it is made of, null if there is none that can be opened.
+    std::unique_ptr<GdalReader> first_source() const {
+        const GdalMessages messages;
+        for (const std::string& file : files())
+            if (file != path_) try {
+                    return std::make_unique<GdalReader>(file, options_, messages);
+                } catch (const Error&) {
+                    return nullptr;
+                }
+        return nullptr;
+    }
+
+    glm::ivec2 natural_size() const {
+        glm::ivec2 size(0);
+        band_.GetBlockSize(&size.x, &size.y);
+        return size;
+    }
+
+    // At most about a million samples at a time. False if a value does not fit the storage.
     template <class Read, class Stored>
-    bool read_all(Raster& raster, GDALDataType type) {
-        const int w = raster.width;
-        const int rows_at_once = std::max(1, (1 << 20) / w);
-        std::vector<Stored> samples(raster.count());
-        std::vector<Read> piece(static_cast<std::size_t>(w) * static_cast<std::size_t>(rows_at_once));
-        bool any = false;
-        for (int row = 0; row < raster.height; row += rows_at_once) {
-            const int rows = std::min(rows_at_once, raster.height - row);
-            fetch(band_, row, w, rows, piece.data(), type);
-            if (masked_) {
-                mask_.resize(piece.size());
-                fetch(*band_.GetMaskBand(), row, w, rows, mask_.data(), GDT_Byte);
+    bool read_pieces(const SampleWindow& window, GDALDataType type, Stored* out, const GdalMessages& messages) {
+        const int rows_at_once = std::clamp((1 << 20) / window.columns, 1, window.rows);
+        SampleWindow piece = window;
+        for (; piece.row < window.row + window.rows; piece.row += rows_at_once) {
+            piece.rows = std::min(rows_at_once, window.row + window.rows - piece.row);
+            Read* read = nullptr;
+            if constexpr (std::is_same_v<Read, Stored>) {
+                read = out;  // turned into samples where they lie
+            } else {
+                buffer_.resize(piece.count() * sizeof(Read));
+                read = reinterpret_cast<Read*>(buffer_.data());
             }
-            const std::size_t n = static_cast<std::size_t>(w) * static_cast<std::size_t>(rows);
-            Stored* out = samples.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(w);
-            if (!convert(raster, piece.data(), n, out, any)) return false;
+            fetch(band_, piece, read, type, messages);
+            if (masked_) {
+                mask_.resize(piece.count());
+                fetch(*band_.GetMaskBand(), piece, mask_.data(), GDT_Byte, messages);
+            }
+            if (!convert(read, piece.count(), out)) return false;
+            out += piece.count();
         }
-        if (!any) throw Error(Fault::bad_data, path_, "holds no heights: every sample is nodata", one_band);
-        raster.samples = std::move(samples);
         return true;
     }
 
-    void fetch(GDALRasterBand& band, int row, int w, int rows, void* out, GDALDataType type) {
-        const int n = reduction_;
-        if (band.RasterIO(GF_Read, 0, row * n, w * n, rows * n, out, w, rows, type, 0, 0, nullptr) != CE_None)
-            throw Error(Fault::bad_data, path_, "is damaged or cut short: " + messages_.last(), one_band);
+    void fetch(GDALRasterBand& band, const SampleWindow& w, void* out, GDALDataType type,
+               const GdalMessages& messages) const {
+        if (can_read(band, w, out, type)) return;
+        SampleWindow bad = w;
+        bad.rows = 1;
+        while (bad.row < w.row + w.rows - 1 && can_read(band, bad, out, type)) ++bad.row;
+        throw Error(Fault::bad_data, path_,
+                    "is damaged or cut short in row " + std::to_string(bad.row) + ", columns " +
+                        std::to_string(w.column) + " to " + std::to_string(w.column + w.columns - 1) +
+                        (messages.last().empty() ? "" : ": ") + messages.last(),
+                    one_band);
     }
 
-    bool convert(const Raster& raster, const std::int32_t* in, std::size_t n, std::int16_t* out, bool& any) const {
+    bool can_read(GDALRasterBand& band, const SampleWindow& w, void* out, GDALDataType type) const {
+        const int n = reduction_;
+        return band.RasterIO(GF_Read, w.column * n, w.row * n, w.columns * n, w.rows * n, out, w.columns, w.rows, type,
+                             0, 0, nullptr) == CE_None;
+    }
+
+    template <class Integer>
+    bool convert(const Integer* in, std::size_t n, std::int16_t* out) const {
+        constexpr int none = std::numeric_limits<int>::min();
         const bool integral = has_nodata_ && nodata_ == std::floor(nodata_) && std::abs(nodata_) < 1e6;
-        const std::int32_t nodata = integral ? static_cast<std::int32_t>(nodata_) : std::numeric_limits<int>::min();
-        std::int32_t least = 0, greatest = 0;
-        bool valid_seen = false;
+        const int nodata = integral ? static_cast<int>(nodata_) : none;
+        int least = 0, greatest = 0;
         for (std::size_t i = 0; i < n; ++i) {
-            const bool valid = in[i] != nodata && (!masked_ || mask_[i] != 0);
-            const std::int32_t v = valid ? in[i] : 0;
-            valid_seen |= valid;
+            const bool valid = static_cast<int>(in[i]) != nodata && (!masked_ || mask_[i] != 0);
+            const int v = valid ? static_cast<int>(in[i]) : 0;
             least = std::min(least, v);
             greatest = std::max(greatest, v);
             out[i] = valid ? static_cast<std::int16_t>(v) : void_sample;
         }
-        any |= valid_seen;
-        const double metres = std::max(std::abs(least * raster.scale), std::abs(greatest * raster.scale));
-        return least > water_sample && greatest <= 32767 && metres + std::abs(raster.offset) <= unbelievable_m;
+        const double metres = std::max(std::abs(least * scale_), std::abs(greatest * scale_));
+        return least > water_sample && greatest <= 32767 && metres + std::abs(offset_) <= unbelievable_m;
     }
 
     template <class Read>
-    bool convert(const Raster& raster, const Read* in, std::size_t n, float* out, bool& any) const {
+    bool convert(const Read* in, std::size_t n, float* out) const {
         const Read nodata = static_cast<Read>(nodata_);  // a float file's nodata is the float nearest to what it says
         for (std::size_t i = 0; i < n; ++i) {
-            const double metres = raster.offset + raster.scale * static_cast<double>(in[i]);
+            const double metres = offset_ + scale_ * static_cast<double>(in[i]);
             const bool valid =
                 std::abs(metres) <= unbelievable_m && !(has_nodata_ && in[i] == nodata) && (!masked_ || mask_[i] != 0);
             out[i] = valid ? static_cast<float>(in[i]) : std::numeric_limits<float>::quiet_NaN();
-            any |= valid;
         }
         return true;
     }
 
+    std::string path_;
+    RasterOptions options_;
+    Dataset dataset_;
     GDALRasterBand& band_;
-    int reduction_;
-    const std::string& path_;
-    const GdalMessages& messages_;
-    double nodata_ = 0;
+    int reduction_ = 1;
+    double scale_ = 1, offset_ = 0, nodata_ = 0;
     bool has_nodata_ = false, masked_ = false;
+    std::vector<char> buffer_;
     std::vector<std::uint8_t> mask_;
 };
 
@@ -236,34 +327,16 @@ class GdalDriver : public RasterDriver {
   public:
     GdalDriver() {
         const GdalMessages quiet;
+        CPLSetConfigOption("GTIFF_DIRECT_IO", "YES");  // windows of uncompressed strips without decoding whole strips
         GDALAllRegister();
     }
 
-    Raster read(const std::string& path, const RasterOptions& options, std::vector<std::string>& files) const override {
+    std::unique_ptr<RasterReader> open(const std::string& path, const RasterOptions& options) const override {
         const GdalMessages messages;
-        const Dataset dataset = open(path, messages);
-        GDALRasterBand& band = height_band(*dataset, path);
-        Raster raster;
-        const int n = reduction_for(band.GetXSize(), band.GetYSize(), options, path);
-        raster.width = band.GetXSize() / n;
-        raster.height = band.GetYSize() / n;
-        raster.reduction = n;
-        read_georeference(*dataset, options, path, raster);
-        raster.grid.origin = raster.grid.crs_from_sample(glm::dvec2(0.5 * (n - 1)));
-        raster.grid.per_column *= n;
-        raster.grid.per_row *= n;
-        const double unit = metres_per_unit(*dataset, band);
-        raster.scale = band.GetScale() * unit;
-        raster.offset = band.GetOffset() * unit;
-        if (!std::isfinite(raster.scale) || raster.scale == 0 || !std::isfinite(raster.offset))
-            throw Error(Fault::bad_data, path, "has no usable scale and offset");
-        SampleReader(band, n, path, messages).read(raster);
-        if (char** list = dataset->GetFileList()) {
-            for (int i = 0; list[i]; ++i) files.emplace_back(list[i]);
-            CSLDestroy(list);
-        }
-        return raster;
+        return std::make_unique<GdalReader>(path, options, messages);
     }
+
+    void limit_cache(std::size_t bytes) const override { GDALSetCacheMax64(static_cast<GIntBig>(bytes)); }
 
     std::string version() const override { return std::string("GDAL ") + GDALVersionInfo("RELEASE_NAME"); }
 };
@@ -271,7 +344,7 @@ class GdalDriver : public RasterDriver {
 }  // namespace
 }  // namespace planet
 
-extern "C" __attribute__((visibility("default"))) const planet::RasterDriver* octaglobe_gdal_2() {
+extern "C" __attribute__((visibility("default"))) const planet::RasterDriver* octaglobe_gdal_3() {
     static const planet::GdalDriver driver;
     return &driver;
 }

@@ -75,6 +75,20 @@ TEST(Values, DistanceUnits) {
         EXPECT_NE(refusal([&] { parse_distance("--it", text, range); }), "") << text;
 }
 
+TEST(Values, Memory) {
+    constexpr std::size_t low = 1 << 20, high = std::size_t{1} << 40;
+    EXPECT_EQ(parse_memory("--it", "1048576", low, high), low);
+    EXPECT_EQ(parse_memory("--it", "512MiB", low, high), std::size_t{512} << 20);
+    EXPECT_EQ(parse_memory("--it", "512M", low, high), std::size_t{512} << 20);
+    EXPECT_EQ(parse_memory("--it", " 1.5 GiB ", low, high), std::size_t{1536} << 20);
+    EXPECT_EQ(parse_memory("--it", "2000MB", low, high), 2'000'000'000u);
+    EXPECT_EQ(parse_memory("--it", "2000000 B", low, high), 2'000'000u);
+    EXPECT_EQ(parse_memory("--it", "1T", low, high), high);
+    for (const char* text : {"", "M", "1", "1048575", "1e30", "2T", "nan", "inf", "-1G", "512Mi", "512MiBB", "512 Mb",
+                             "1 parsec", "0x10M", "1M1"})
+        EXPECT_NE(refusal([&] { parse_memory("--it", text, low, high); }), "") << text;
+}
+
 TEST(Values, NumbersAndAngles) {
     EXPECT_EQ(parse_number("--it", "-0", {-1, 1}), 0);
     EXPECT_FALSE(std::signbit(parse_number("--it", "-0", {-1, 1})));

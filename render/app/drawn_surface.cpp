@@ -1,0 +1,73 @@
+#include "render/app/drawn_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "planet/geodesy/geodetic.h"
+#include "planet/geodesy/geoid.h"
+#include "planet/octahedron/cell_metrics.h"
+#include "render/app/data_path.h"
+
+namespace render {
+
+namespace {
+
+using planet::wgs84;
+
+/// Distance from the ground from which the planet and its air fill most of the picture's shorter side, m.
+double whole_globe_range(double fov) {
+    return (wgs84.a + 60e3) / std::sin(0.5 * 0.94 * fov) - wgs84.a;
+}
+
+/// No geoid of the Earth lies deeper below the ellipsoid, m: EGM96 goes down to -107.
+constexpr double deepest_geoid_m = 120;
+
+}  // namespace
+
+DrawnSurface::DrawnSurface(std::shared_ptr<const planet::ElevationStore> s, double factor)
+    : store(s), exaggeration(factor), field(s), tiles(field.cache(), {store->metadata().ellipsoid, factor}) {}
+
+PatchSurface DrawnSurface::for_patches() const {
+    return {.heights = [this](auto normals, auto heights) { field.heights(normals, heights); },
+            .spacing =
+                [this](const glm::dvec3& normal) {
+                    planet::SurfaceCursor cursor = field.cursor();
+                    cursor.seek(normal);
+                    return planet::cell_metrics(cursor.cell().bisection_level()).vertex_spacing * wgs84.mean_radius();
+                }};
+}
+
+double DrawnSurface::occluder_radius() const {
+    double lowest = 0;
+    for (int face = 0; face < planet::face_count; ++face)
+        if (const auto tile = field.cache().tile(planet::LocationCode::face_root(face)))
+            lowest = std::min(lowest, static_cast<double>(tile->min_height) * exaggeration);
+    return store->metadata().ellipsoid.b + lowest - deepest_geoid_m;
+}
+
+Camera DrawnSurface::camera(const RenderOptions& o) const {
+    const glm::dvec3 n = planet::normal_from_geodetic(o.at.latitude, o.at.longitude);
+    std::optional<planet::Geoid> geoid;  // a store that knows no geoid is drawn on the ellipsoid
+    if (!store->metadata().undulation.empty()) geoid.emplace(data_file("egm96-15.pgm"));
+    const auto ground_at = [&](const glm::dvec3& normal) {
+        const double undulation = geoid ? geoid->undulation(normal).m : 0;
+        return static_cast<double>(field.height(normal)) * exaggeration + undulation;
+    };
+    const double ground = ground_at(n);
+    glm::dvec3 eye;
+    if (o.height) {
+        eye = planet::ecef_from_normal(wgs84, n, {ground + *o.height});
+    } else {
+        const double range = o.range.value_or(whole_globe_range(o.fov));
+        eye = planet::ecef_from_normal(wgs84, n, {ground}) - range * look_direction(n, o.heading, o.pitch);
+        // A shallow view can start inside a mountain: the eye then stands on it.
+        const planet::NormalPosition p = planet::position_from_ecef(wgs84, eye);
+        const double floor = ground_at(p.normal) + std::min(2.0, range);
+        if (p.h.m < floor) eye = planet::ecef_from_normal(wgs84, p.normal, {floor});
+    }
+    return make_camera(eye, n, o.heading, o.pitch, focal_length_px(o.fov, o.size.width, o.size.height), o.size.width,
+                       o.size.height);
+}
+
+}  // namespace render

@@ -1,0 +1,30 @@
+#pragma once
+// The surface that is drawn, and where the eye stands above it.
+
+#include <memory>
+
+#include "planet/store/store_field.h"
+#include "planet/store/store_tiles.h"
+#include "render/app/render_options.h"
+#include "render/picture/camera.h"
+#include "render/picture/relief_patches.h"
+
+namespace render {
+
+struct DrawnSurface {
+    std::shared_ptr<const planet::ElevationStore> store;
+    double exaggeration;
+    planet::StoreField field;
+    planet::StoreTiles tiles;
+
+    DrawnSurface(std::shared_ptr<const planet::ElevationStore> store, double exaggeration);
+
+    /// What normals per pixel are made from. Refers to this.
+    PatchSurface for_patches() const;
+    /// The radius of a ball about the planet's centre below all terrain, m.
+    double occluder_radius() const;
+    /// The camera of a picture: over the ground as it is drawn, exaggeration and geoid included, never below it.
+    Camera camera(const RenderOptions& options) const;
+};
+
+}  // namespace render

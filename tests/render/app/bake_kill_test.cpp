@@ -1,0 +1,140 @@
+// A bake that is killed at any moment leaves a store that opens, verifies and goes on to the same content.
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/inotify.h>
+#include <sys/syscall.h>
+#include <sys/time.h>
+
+#include <array>
+
+#include "tests/render/app/baked_store.h"
+
+namespace render {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string arguments = "bake dem.vrt --least-level 12 --density 2 --threads 2 -o store.octa";
+constexpr int kills = 30;  // of each kind
+
+class KilledBake : public testing::Test {
+  protected:
+    KilledBake() {
+        hilly_terrain().write(folder_ / "dem.vrt");
+        rusage usage{};
+        Process whole(folder_.path(), words(arguments));
+        EXPECT_EQ(whole.wait(&usage).status, 0);
+        processor_us_ = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1e6 +
+                        static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+        rows_ = rows_of(folder_ / "store.octa");
+        names_ = folder_.names();
+        fs::remove(folder_ / "store.octa");
+    }
+
+    /// What a killed bake left is a store, and goes on. @return the tiles that it had
+    std::uint64_t expect_resumes() {
+        std::uint64_t tiles = 0;
+        const fs::path file = folder_ / "store.octa";
+        if (fs::exists(file) && fs::file_size(file) > 0) {
+            const Outcome info = run(folder_.path(), words("info store.octa --json info.json"));
+            EXPECT_EQ(info.status, 0) << info.err;
+            if (info.status == 0) tiles = nlohmann::json::parse(content(folder_ / "info.json")).at("tiles");
+            fs::remove(folder_ / "info.json");
+            const Outcome verified = run(folder_.path(), words("verify store.octa"));
+            EXPECT_EQ(verified.status, 0) << verified.out << verified.err;
+        }
+        const Outcome resumed = run(folder_.path(), words(arguments + " --resume"));
+        EXPECT_EQ(resumed.status, 0) << resumed.err;
+        EXPECT_EQ(rows_of(file), rows_);
+        EXPECT_EQ(folder_.names(), names_);
+        fs::remove(file);
+        return tiles;
+    }
+
+    ScratchFolder folder_;
+    double processor_us_ = 0;  ///< of a whole bake
+    std::string rows_;
+    std::vector<std::string> names_;
+};
+
+// Moments are evenly spread over the processor time of a bake, so that they do not depend on what else the machine does.
+// Nothing handles SIGPROF: it ends the process as SIGKILL does.
+TEST_F(KilledBake, AtAnyMomentOfItsWork) {
+    int killed = 0;
+    for (int i = 0; i < kills; ++i) {
+        SCOPED_TRACE(i);
+        const auto moment = static_cast<suseconds_t>(processor_us_ * (i + 0.5) / kills);
+        const Outcome outcome = run(folder_.path(), words(arguments), [&] {
+            const itimerval timer{{0, 0}, {moment / 1'000'000, moment % 1'000'000}};
+            ::setitimer(ITIMER_PROF, &timer, nullptr);
+        });
+        ASSERT_TRUE(outcome.status == 128 + SIGPROF || outcome.status == 0) << outcome.status << outcome.err;
+        killed += outcome.status != 0;
+        expect_resumes();
+    }
+    EXPECT_GE(killed, kills * 2 / 3);
+}
+
+/// What happens in a folder.
+class FolderWatch {
+  public:
+    explicit FolderWatch(const fs::path& folder) : watch_(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {
+        ::inotify_add_watch(watch_, folder.c_str(),
+                            IN_CREATE | IN_MODIFY | IN_DELETE | IN_MOVED_TO | IN_CLOSE_WRITE | IN_CLOSE_NOWRITE);
+    }
+    ~FolderWatch() { ::close(watch_); }
+    FolderWatch(const FolderWatch&) = delete;
+    FolderWatch& operator=(const FolderWatch&) = delete;
+
+    /// Waits for the n-th event of a process, or its end. @return how many there were
+    int wait_for(int n, const Process& process) {
+        const int ended = static_cast<int>(::syscall(SYS_pidfd_open, process.id(), 0));
+        int events = 0;
+        for (bool running = true; running && events < n;) {
+            std::array<pollfd, 2> ready{{{watch_, POLLIN, 0}, {ended, POLLIN, 0}}};
+            ::poll(ready.data(), ready.size(), -1);
+            running = ready[1].revents == 0;
+            alignas(inotify_event) std::array<char, 4096> bytes{};
+            for (ssize_t length; events < n && (length = ::read(watch_, bytes.data(), bytes.size())) > 0;)
+                for (ssize_t at = 0; at < length; ++events)
+                    at += static_cast<ssize_t>(sizeof(inotify_event) +
+                                               reinterpret_cast<const inotify_event*>(bytes.data() + at)->len);
+        }
+        ::close(ended);
+        return events;
+    }
+
+  private:
+    int watch_;
+};
+
+// Moments are evenly spread over what happens in the folder: files made, written, renamed, removed.
+TEST_F(KilledBake, AtAnyMomentOfItsWriting) {
+    int events = 0;
+    {
+        FolderWatch watch(folder_.path());
+        Process whole(folder_.path(), words(arguments));
+        events = watch.wait_for(1 << 30, whole);
+        ASSERT_EQ(whole.wait().status, 0);
+        fs::remove(folder_ / "store.octa");
+    }
+    ASSERT_GT(events, 10);
+    int killed = 0, had_tiles = 0;
+    for (int i = 0; i < kills; ++i) {
+        SCOPED_TRACE(i);
+        {
+            FolderWatch watch(folder_.path());
+            Process bake(folder_.path(), words(arguments));
+            watch.wait_for(1 + events * i / kills, bake);
+            ::kill(bake.id(), SIGKILL);
+            killed += bake.wait().status == 128 + SIGKILL;
+        }
+        had_tiles += expect_resumes() > 0;
+    }
+    EXPECT_GE(killed, kills * 2 / 3);
+    EXPECT_GE(had_tiles, 3);
+}
+
+}  // namespace
+}  // namespace render
