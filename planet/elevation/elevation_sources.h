@@ -40,7 +40,7 @@ struct SourceOptions {
 /// source, a mosaic, without seams: where they overlap the samples of the later one count, and files that are missing
 /// are voids. The others are sources of their own.
 ///
-/// Reads every file once, in full: 60,000 x 60,000 samples of 16 bits take about 15 s of processor time. Files must not
+/// Reads every file once, in full: 60,000 x 60,000 samples of 16 bits take about 25 s of processor time. Files must not
 /// change afterwards: heights() and all others throw Error(bad_data) with the file's name if one does or cannot be read.
 ///
 /// Throws Error: bad_usage for no source, or a geoid that is missing; bad_data for a pattern that matches nothing, what

@@ -44,6 +44,8 @@ const RasterDriver& raster_driver() {
 std::string checksum_of_files(std::vector<std::string> files) {
     std::error_code failed;
     std::erase_if(files, [&](const std::string& f) { return !std::filesystem::is_regular_file(f, failed); });
+    // However they are written: the order must not depend on the folder from which they are named.
+    for (std::string& file : files) file = std::filesystem::weakly_canonical(file, failed).string();
     std::sort(files.begin(), files.end());
     files.erase(std::unique(files.begin(), files.end()), files.end());
     if (files.empty()) return {};

@@ -74,21 +74,20 @@ PlacedTile::StoredRecord PlacedTile::stored(std::size_t vertex) const {
 }
 
 void PlacedTile::place(const Placement& placement) {
-    const std::vector<glm::dvec3> normals = tile_normals(root, depth);
-    std::vector<glm::vec3> rounded(normals.size());
-    position.resize(normals.size());
-    for (std::size_t v = 0; v < normals.size(); ++v) {
-        const GeoidUndulation N{undulation_.empty() ? 0.0 : static_cast<double>(undulation_[v])};
-        const glm::dvec3 p = placement.ecef(normals[v], static_cast<double>(height[v]), N);
-        position[v] = grid_from_ecef(p);
-        rounded[v] = glm::vec3(p);
-    }
-    place_records(rounded, placement);
-    if (!child_bound.empty()) bound_children(rounded, placement);
+    static thread_local TileLattice lattice;
+    static thread_local std::vector<GeoidUndulation> undulation;
+    undulation.resize(undulation_.size());
+    for (std::size_t v = 0; v < undulation.size(); ++v) undulation[v].m = static_cast<double>(undulation_[v]);
+    lattice.set_normals(corners(root), depth);
+    lattice.set_positions(placement, height, undulation, {});
+    position.resize(lattice.size());
+    for (std::size_t v = 0; v < lattice.size(); ++v) position[v] = grid_from_ecef(lattice.position(v));
+    place_records(lattice.rounded(), placement);
+    if (!child_bound.empty()) bound_children(lattice.rounded(), placement);
     if (placement.exaggeration == 1.0) stored_ = {};
 }
 
-void PlacedTile::place_records(const std::vector<glm::vec3>& rounded, const Placement& placement) {
+void PlacedTile::place_records(std::span<const glm::vec3> rounded, const Placement& placement) {
     const TileLayout& layout = tile_layout();
     const Exaggeration exaggeration(placement.ellipsoid, placement.exaggeration);
     split.by_vertex_.assign(rounded.size(), SplitRecord{});
@@ -112,7 +111,7 @@ void PlacedTile::place_records(const std::vector<glm::vec3>& rounded, const Plac
 // The split vertex of a root below is not known here, but it lies near the middle of the chord of its split side: the
 // plane of its cell meets its normal there, to second order, and the certified deviation bounds how far it is from that
 // plane. 2 % of the side covers the second order and the roundings of an exaggerated record (see Exaggeration).
-void PlacedTile::bound_children(const std::vector<glm::vec3>& rounded, const Placement& placement) {
+void PlacedTile::bound_children(std::span<const glm::vec3> rounded, const Placement& placement) {
     const TileLayout& layout = tile_layout();
     const Exaggeration exaggeration(placement.ellipsoid, placement.exaggeration);
     const double rounding = 2.0 * (1.0 + std::max(1.0, placement.exaggeration)) * (max_bisection_level + 1);

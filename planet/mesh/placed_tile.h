@@ -5,6 +5,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "planet/geodesy/ellipsoid.h"
@@ -141,8 +142,8 @@ class PlacedTile {
     void note_children(const Tile& tile);
     StoredRecord stored(std::size_t vertex) const;
     void place(const Placement& placement);
-    void place_records(const std::vector<glm::vec3>& rounded, const Placement& placement);
-    void bound_children(const std::vector<glm::vec3>& rounded, const Placement& placement);
+    void place_records(std::span<const glm::vec3> rounded, const Placement& placement);
+    void bound_children(std::span<const glm::vec3> rounded, const Placement& placement);
     const PlacedTile* child_at(const TileSource& source, unsigned k) const;
 
     std::vector<float> undulation_;     // by vertex index, metres: exact for tiles of stores. Empty: 0

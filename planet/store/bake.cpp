@@ -71,7 +71,7 @@ class Bake {
                                   .finest_level = options_.finest_level,
                                   .extra_levels = options_.extra_levels,
                                   .memory_bytes = options_.memory_bytes / 2});
-        if (least_bake_bytes(options_, plan_) > options_.memory_bytes) refuse_memory(options_);
+        if (!has_memory_for(options_, plan_)) refuse_memory(options_);
         metadata_.finest_level = plan_.finest_level();
         metadata_.quantum_m = options_.quantum_m > 0 ? options_.quantum_m : quantum_for(metadata_.finest_level, radius);
         metadata_.tiles = plan_.tiles();
@@ -142,9 +142,8 @@ BakeReport bake(const ElevationField& field, const BakeOptions& options, const s
                     "another name, --replace, or --resume for a store that is not finished");
     }
     work.plan();
-    const auto file = options.resume && !options.replace
-                          ? BakeFile::resume(path, work.metadata())
-                          : std::make_unique<BakeFile>(SqliteFile(path, SqliteFile::Access::create), work.metadata());
+    const auto file = options.resume && !options.replace ? BakeFile::resume(path, work.metadata())
+                                                         : BakeFile::begin(path, work.metadata());
     work.run(*file);
     return work.report();
 }

@@ -54,9 +54,12 @@ bool is_missing_or_empty(const std::filesystem::path& path) {
     return !std::filesystem::exists(path) || (!fault && size == 0);
 }
 
-// The name under which a finished store is put together.
+// The names under which a store is begun, and put together when it is finished.
 std::filesystem::path beside(const std::filesystem::path& path) {
     return path.string() + "-finishing";
+}
+std::filesystem::path before(const std::filesystem::path& path) {
+    return path.string() + "-beginning";
 }
 
 }  // namespace
@@ -75,9 +78,18 @@ std::optional<StoreMetadata> BakeFile::finished(const std::filesystem::path& pat
     return store.metadata();
 }
 
+std::unique_ptr<BakeFile> BakeFile::begin(const std::filesystem::path& path, const StoreMetadata& metadata) {
+    const std::filesystem::path fresh = before(path);
+    { BakeFile tables(SqliteFile(fresh, SqliteFile::Access::create), metadata); }
+    std::error_code fault;
+    std::filesystem::remove(path.string() + "-journal", fault);  // of what is replaced: it must not be rolled back
+    std::filesystem::rename(fresh, path, fault);
+    if (fault) throw Error(Fault::bad_data, path.string(), "cannot be written (" + fault.message() + ")");
+    return resume(path, metadata);
+}
+
 std::unique_ptr<BakeFile> BakeFile::resume(const std::filesystem::path& path, const StoreMetadata& metadata) {
-    if (is_missing_or_empty(path))
-        return std::make_unique<BakeFile>(SqliteFile(path, SqliteFile::Access::create), metadata);
+    if (is_missing_or_empty(path)) return begin(path, metadata);
     check_store_file(path);
     std::unique_ptr<BakeFile> resumed(new BakeFile(SqliteFile(path, SqliteFile::Access::recover)));
     resumed->path_ = path;

@@ -25,6 +25,8 @@ class BakeFile {
   public:
     /// A new store.
     BakeFile(SqliteFile&& file, const StoreMetadata& metadata);
+    /// A new store in place of what is there. Its tables are made under another name, so that the file is never without.
+    static std::unique_ptr<BakeFile> begin(const std::filesystem::path& path, const StoreMetadata& metadata);
     /// An unfinished store, or a new one where there is no file or an empty one. Throws Error(bad_usage) if it was begun
     /// with other sources or options than `metadata` says.
     static std::unique_ptr<BakeFile> resume(const std::filesystem::path& path, const StoreMetadata& metadata);

@@ -3,19 +3,17 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "planet/elevation/elevation_field.h"
-#include "planet/mesh/deviation.h"
-#include "planet/mesh/tile.h"
-#include "planet/store/tile_sides.h"
+#include "planet/store/sample_distance.h"
 
 namespace planet {
 
 /// One thread's: keeps its memory.
 class TileResampling {
   public:
-    /// The tile for which samples are asked. @param lattice with normals and positions @param exists by local index
+    /// Of a tile: its heights and undulations, its lattice with normals and positions, and by local index which diamonds
+    /// exist.
     struct Surface {
         const ElevationField& field;
         const Placement& placement;
@@ -31,18 +29,10 @@ class TileResampling {
     float largest(const Surface& surface, std::span<const std::uint8_t> has_tile_below);
 
   private:
-    void certify_without_tiles(unsigned local, std::span<const std::uint8_t> has_tile_below);
-    void certify(LocationCode cell, unsigned local);
-    void certify_samples(LocationCode cell, unsigned local);
-    unsigned finest_cell(unsigned from, const glm::dvec3& n) const;
-    double height(unsigned local, const glm::dvec3& n);
+    void add_without_tiles(const Surface& surface, LocationCode cell, std::span<const std::uint8_t> has_tile_below);
+    void add(const Surface& surface, LocationCode cell);
 
-    const Surface* surface_ = nullptr;
-    std::vector<glm::dvec3> normals_;
-    std::vector<float> heights_;
-    unsigned at_ = 0;  // the cell of the plane
-    glm::dvec3 corner_{0}, plane_{0};
-    double largest_ = 0;
+    SampleDistance distance_;
 };
 
 }  // namespace planet

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <thread>
 #include <utility>
@@ -28,6 +27,23 @@ std::size_t threads_of(const BakeOptions& options) {
                                : std::max(1u, std::thread::hardware_concurrency());
 }
 
+// An eighth is for what the allocator loses to tiles of many sizes that come and go.
+std::size_t usable_bytes(const BakeOptions& options) {
+    return options.memory_bytes - options.memory_bytes / 8;
+}
+
+// Before the first tile.
+std::size_t least_bytes(const BakeOptions& options, const TilePlan& plan) {
+    return plan.bytes() + fixed_bytes + threads_of(options) * (thread_bytes + 2 * sizeof(TileRecords));
+}
+
+// FNV-1a, 64 bits: enough to find damage.
+std::uint64_t checksum_of(std::span<const std::uint8_t> bytes) {
+    std::uint64_t h = 0xcbf29ce484222325u;
+    for (const std::uint8_t byte : bytes) h = (h ^ byte) * 0x100000001b3u;
+    return h;
+}
+
 // What is known of a tile with tiles below, as a row of `unfinished`.
 std::vector<std::uint8_t> saved(InnerTile& inner) {
     std::vector<std::uint8_t> bytes;
@@ -44,19 +60,24 @@ std::vector<std::uint8_t> saved(InnerTile& inner) {
     put(inner.records->radius);
     put(inner.tile.child_deviation);
     put(inner.tile.child_radius);
+    const std::uint64_t checksum = checksum_of(bytes);
+    bytes.resize(bytes.size() + sizeof checksum);
+    std::memcpy(bytes.data() + bytes.size() - sizeof checksum, &checksum, sizeof checksum);
     return bytes;
 }
 
-// The larger of what is known and what was.
+// The larger of what is known and what was. False: the bytes are damaged.
 bool merge(std::span<const std::uint8_t> bytes, InnerTile& inner) {
-    if (bytes.size() != sizeof(float) * (2 + 2 * tile_vertices + 2 * tile_cells)) return false;
-    std::size_t at = 0;
-    bool sound = true;
+    std::uint64_t checksum;
+    constexpr std::size_t size = sizeof(float) * (2 + 2 * tile_vertices + 2 * tile_cells);
+    if (bytes.size() != size + sizeof checksum) return false;
+    std::memcpy(&checksum, bytes.data() + size, sizeof checksum);
+    if (checksum != checksum_of(bytes.first(size))) return false;
+    const std::uint8_t* at = bytes.data();
     const auto next = [&] {
         float value;
-        std::memcpy(&value, bytes.data() + at, sizeof value);
+        std::memcpy(&value, at, sizeof value);
         at += sizeof value;
-        sound = sound && std::isfinite(value);
         return value;
     };
     inner.tile.min_height = std::min(inner.tile.min_height, next());
@@ -65,13 +86,13 @@ bool merge(std::span<const std::uint8_t> bytes, InnerTile& inner) {
     for (float& r : inner.records->radius) r = std::max(r, next());
     for (float& d : inner.tile.child_deviation) d = std::max(d, next());
     for (float& r : inner.tile.child_radius) r = std::max(r, next());
-    return sound;
+    return true;
 }
 
 }  // namespace
 
-std::size_t least_bake_bytes(const BakeOptions& options, const TilePlan& plan) {
-    return plan.bytes() + fixed_bytes + threads_of(options) * (thread_bytes + 2 * sizeof(TileRecords));
+bool has_memory_for(const BakeOptions& options, const TilePlan& plan) {
+    return least_bytes(options, plan) <= usable_bytes(options);
 }
 
 void refuse_memory(const BakeOptions& options) {
@@ -307,9 +328,9 @@ void BakeRun::write(Lock& lock) {
 
 // Records of tiles in the frontier are kept in what is left of the memory.
 void BakeRun::keep_within_memory() {
-    const std::size_t limit = scene_.options.memory_bytes;
-    const std::size_t needed = least_bake_bytes(scene_.options, plan_) + inner_bytes_ + to_write_bytes_ +
-                               frontier_.size() * frontier_tile_bytes;
+    const std::size_t limit = usable_bytes(scene_.options);
+    const std::size_t needed =
+        least_bytes(scene_.options, plan_) + inner_bytes_ + to_write_bytes_ + frontier_.size() * frontier_tile_bytes;
     if (needed > limit) refuse_memory(scene_.options);
     frontier_.keep_at_most((limit - needed) / sizeof(TileRecords));
     most_bytes_ = std::max(most_bytes_, needed + frontier_.kept() * sizeof(TileRecords));

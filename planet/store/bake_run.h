@@ -19,8 +19,8 @@
 
 namespace planet {
 
-/// What a bake needs before its first tile, bytes.
-std::size_t least_bake_bytes(const BakeOptions& options, const TilePlan& plan);
+/// Whether the limit allows to begin.
+bool has_memory_for(const BakeOptions& options, const TilePlan& plan);
 /// Error(bad_usage): the limit is too low.
 [[noreturn]] void refuse_memory(const BakeOptions& options);
 

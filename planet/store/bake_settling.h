@@ -10,7 +10,8 @@
 #include <span>
 
 #include "planet/mesh/deviation.h"
-#include "planet/store/baked_tile.h"
+#include "planet/mesh/tile.h"
+#include "planet/store/tile_sides.h"
 
 namespace planet {
 

@@ -1,13 +1,10 @@
 #pragma once
-// A tile as the bake encodes it, and the arithmetic of saturation that baking and reading share.
+// A tile as the bake encodes it.
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "planet/mesh/deviation.h"
 #include "planet/mesh/tile.h"
-#include "planet/store/coverage.h"
 #include "planet/store/tile_sides.h"
 
 namespace planet {
@@ -25,21 +22,6 @@ struct BakedTile {
     std::vector<SideGain> gain;        ///< by side cell; of leaf tiles only
     bool has_tiles_below = false;
     bool inner() const { return has_tiles_below; }
-};
-
-/// The records of one tile as they are saturated. Spans are by local index, but `rounded` by vertex index.
-struct Saturation {
-    const TileLayout& layout;
-    int depth;
-    std::span<float> deviation;  ///< in: each cell's own deviation
-    std::span<float> radius;     ///< in: corner_distance() of cells that lack a child diamond, else 0
-    std::span<const glm::vec3> rounded;
-    std::span<const std::uint8_t> exists;
-
-    /// Raises record i over the diamonds of its two children in the same tile; 0 if it does not exist.
-    void raise(unsigned i) const;
-    /// Gives both cells of the diamond i inside the tile the larger numbers.
-    void join(unsigned i, unsigned beyond) const;
 };
 
 }  // namespace planet

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <unordered_set>
 #include <utility>
 
 #include "planet/parallel.h"
@@ -73,7 +72,7 @@ void ResidentSet::free_if_unused(ResidentTile& tile) {
     tiles_.erase(tile.root.bits());
 }
 
-ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile) {
+ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile, std::span<const LocationCode> support) {
     ResidentTile& resident = slot(tile->root);
     assert(!resident.tile);
     tile->close();
@@ -81,7 +80,7 @@ ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile) {
     resident.below.assign(tile->child_bound.size(), nullptr);
     resident.tile = std::move(tile);
     resident.fresh = true;
-    tie(resident);
+    tie(resident, support);
     ++size_;
     bytes_ += memory_of(resident);
     unsettle(resident, 0);
@@ -89,7 +88,7 @@ ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile) {
     return resident;
 }
 
-void ResidentSet::tie(ResidentTile& tile) {
+void ResidentSet::tie(ResidentTile& tile, std::span<const LocationCode> support) {
     const LocationCode root = tile.root;
     if (root.bisection_level() > 0) {
         tile.above = find(root_above(root));
@@ -104,8 +103,9 @@ void ResidentSet::tie(ResidentTile& tile) {
         for (const Side back : sides)
             if (beside && neighbor(beside->root, back) == root) beside->beside[static_cast<std::size_t>(back)] = &tile;
     }
-    for (const LocationCode support : tile_support(root, tile.tile->depth)) {
-        tile.support.push_back(&slot(support));
+    tile.support.reserve(support.size());
+    for (const LocationCode other : support) {
+        tile.support.push_back(&slot(other));
         ++tile.support.back()->supported;
     }
 }
@@ -238,19 +238,24 @@ void ResidentSet::place(const Placement& placement, unsigned threads) {
 
 std::vector<LocationCode> tile_support(LocationCode root, int depth) {
     std::vector<LocationCode> support;
-    std::unordered_set<std::uint64_t> seen;
-    std::vector<LocationCode> open;
-    for (const SideCell& s : side_cells(depth)) open.push_back(cell_code(root, s.cell));
-    while (!open.empty()) {
-        const LocationCode cell = open.back();
-        open.pop_back();
-        if (!seen.insert(diamond(cell).bits()).second) continue;
-        for (const LocationCode half : {cell, neighbor(cell)}) {
-            const LocationCode holder = cell_in_tile(half).root;
-            if (holder != root && std::find(support.begin(), support.end(), holder) == support.end())
-                support.push_back(holder);
-            if (half.bisection_level() > root.bisection_level()) open.push_back(half.parent());
-        }
+    // Diamonds inside the tile depend, within it, on those of its sides. What these depend on, from the finest level up.
+    const auto side = side_cells(depth);
+    std::size_t next_side = side.size();
+    std::vector<LocationCode> diamonds, above;
+    for (int level = depth - 1; level >= 0; --level) {
+        for (; next_side > 0 && side[next_side - 1].cell >= 1u << level; --next_side)
+            diamonds.push_back(diamond(cell_code(root, side[next_side - 1].cell)));
+        std::sort(diamonds.begin(), diamonds.end());
+        diamonds.erase(std::unique(diamonds.begin(), diamonds.end()), diamonds.end());
+        above.clear();
+        for (const LocationCode cell : diamonds)
+            for (const LocationCode half : {cell, neighbor(cell)}) {
+                const LocationCode holder = half.ancestor(root.bisection_level());
+                if (holder == root) continue;
+                if (std::find(support.begin(), support.end(), holder) == support.end()) support.push_back(holder);
+                if (level > 0) above.push_back(diamond(half.parent()));
+            }
+        std::swap(diamonds, above);
     }
     return support;
 }

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -42,7 +43,8 @@ class ResidentSet final : public TileSource {
     ResidentTile& face(int face) { return *find(LocationCode::face_root(face)); }
 
     /// Adds a tile; all its diamonds are closed until settle(). The tile above it must be there, itself not.
-    ResidentTile& insert(std::unique_ptr<PlacedTile> tile);
+    /// @param support tile_support() of it
+    ResidentTile& insert(std::unique_ptr<PlacedTile> tile, std::span<const LocationCode> support);
     /// Takes a tile out. None below it may be there. To be followed by settle().
     void erase(LocationCode root);
     /// Opens and closes diamonds until the rule holds. Before, a walk may meet cracks.
@@ -60,7 +62,7 @@ class ResidentSet final : public TileSource {
   private:
     ResidentTile& slot(LocationCode root);
     void free_if_unused(ResidentTile& tile);
-    void tie(ResidentTile& tile);
+    void tie(ResidentTile& tile, std::span<const LocationCode> support);
     void untie(ResidentTile& tile);
     void unsettle(ResidentTile& tile, int level);
     void settle_level(ResidentTile& tile, int level);

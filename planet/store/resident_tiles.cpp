@@ -62,9 +62,11 @@ ResidentTiles::~ResidentTiles() {
 // On the loader's threads.
 LoadedTile ResidentTiles::load(LocationCode root) const {
     const std::shared_ptr<const Tile> tile = reader_.tile(root);
-    LoadedTile loaded{root, nullptr, tile && tile->damaged};
-    if (tile && (!tile->damaged || root.bisection_level() == 0))
+    LoadedTile loaded{root, nullptr, tile && tile->damaged, {}};
+    if (tile && (!tile->damaged || root.bisection_level() == 0)) {
         loaded.tile = std::make_unique<PlacedTile>(*tile, placement_);
+        loaded.support = tile_support(root, tile->depth);
+    }
     return loaded;
 }
 
@@ -83,7 +85,7 @@ void ResidentTiles::take_in(LoadedTile loaded) {
     // The tile above may have been dropped meanwhile: then nothing needs this one.
     const int level = loaded.root.bisection_level();
     if (level > 0 && !set_.find(loaded.root.ancestor(level - tile_levels))) return;
-    set_.insert(std::move(loaded.tile));
+    set_.insert(std::move(loaded.tile), loaded.support);
 }
 
 bool ResidentTiles::up_to_date(const SegmentView& view, const SegmentView* ahead) const {

@@ -3,7 +3,6 @@
 #include <sqlite3.h>
 
 #include <cctype>
-#include <cerrno>
 #include <system_error>
 
 #include "planet/error.h"
@@ -29,12 +28,10 @@ std::string uri_from_path(const std::filesystem::path& path, const char* query) 
     return uri + query;
 }
 
-// Quotas and limits of file sizes are I/O errors to SQLite.
+// A quota or a limit of file sizes is a failing write to SQLite.
 bool lacks_space(sqlite3* connection) {
-    const int code = sqlite3_errcode(connection) & 0xff;
-    if (code != SQLITE_IOERR) return code == SQLITE_FULL;
-    const int reason = sqlite3_system_errno(connection);
-    return reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
+    return (sqlite3_errcode(connection) & 0xff) == SQLITE_FULL ||
+           sqlite3_extended_errcode(connection) == SQLITE_IOERR_WRITE;
 }
 
 }  // namespace
@@ -73,9 +70,9 @@ SqliteFile::SqliteFile(const std::filesystem::path& path, Access access)
 }
 
 void SqliteFile::fail(std::string_view doing) const {
-    if (connection_ && lacks_space(get()))
-        throw Error(Fault::bad_data, where_, "the disk is full", "more space, then --resume");
     const char* reason = connection_ ? sqlite3_errmsg(get()) : "out of memory";
+    if (connection_ && lacks_space(get()))
+        throw Error(Fault::bad_data, where_, "the disk is full, or takes no more (" + std::string(reason) + ")");
     throw Error(Fault::bad_data, where_, std::string(doing) + " (" + reason + ")");
 }
 

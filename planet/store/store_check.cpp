@@ -8,6 +8,7 @@
 #include "planet/store/baked_tile.h"
 #include "planet/store/store_tables.h"
 #include "planet/store/tile_cache.h"
+#include "planet/store/tile_sides.h"
 
 namespace planet {
 

@@ -62,7 +62,7 @@ void TileLoader::work(const std::stop_token& stop) {
         begun_.insert(root.bits());
         ++loading_;
         lock.unlock();
-        LoadedTile tile{root, nullptr, false};
+        LoadedTile tile{root, nullptr, false, {}};
         std::exception_ptr failure;
         try {
             tile = load_(root);

@@ -25,6 +25,7 @@ struct LoadedTile {
     LocationCode root;
     std::unique_ptr<PlacedTile> tile;  ///< nullptr: there is none, or it is damaged
     bool damaged = false;
+    std::vector<LocationCode> support;  ///< tile_support() of the tile
 };
 
 /// The functions are for one thread.

@@ -126,6 +126,10 @@ void fill(Report& report, const BakeCommand& command, const planet::BakeReport& 
     report.set("ellipsoid", planet::to_string(command.bake.ellipsoid));
     report.set("vertical_datum", planet::name_of(field.datum()));
     report.set("sources", sources_json(field.sources()));
+    auto assumed = nlohmann::ordered_json::array();
+    for (const planet::SourceInfo& source : field.sources())
+        if (source.datum_assumed) assumed.push_back(source.name);
+    report.set("vertical_datum_assumed", assumed);
     for (const auto& [step, taken] : baked.seconds) report.add_seconds(step, taken);
 }
 
@@ -149,7 +153,8 @@ void print(const BakeCommand& command, const planet::BakeReport& baked, const pl
         {"bound", "no source sample is farther than " + four_digits(baked.resampling_max_m) + " m from the surface"});
     for (const planet::SourceInfo& source : field.sources())
         rows.push_back({"source", source.name + ", " + crs_text(source.crs) + ", above " +
-                                      std::string(planet::name_of(source.datum)) + ", " +
+                                      std::string(planet::name_of(source.datum)) +
+                                      (source.datum_assumed ? " (assumed: it does not say), " : ", ") +
                                       (source.spacing_m > 0 ? four_digits(source.spacing_m) + " m" : "any spacing")});
     print_table(std::cout, rows);
 }
@@ -177,7 +182,8 @@ void run(BakeCommand& command) {
     Report report("bake", command.json);
     set_levels(command);
     const std::size_t shared = command.memory_bytes - program_memory;
-    command.bake.memory_bytes = shared / 2;
+    const std::size_t for_sources = shared / 4;
+    command.bake.memory_bytes = shared - for_sources;
     check_bake_sources(command);
     const BakeTarget target = check_bake_target(command.output, command.bake.resume, command.bake.replace);
     if (command.sources.empty() && !command.over_earth && target != BakeTarget::finished)
@@ -191,13 +197,11 @@ void run(BakeCommand& command) {
     const auto geoid = std::make_shared<const planet::Geoid>(data_file("egm96-15.pgm"));
     const auto field = [&] {
         const auto step = report.step("sources");
-        return open_bake_sources(command, geoid, shared / 2,
+        return open_bake_sources(command, geoid, for_sources,
                                  [&](double fraction) { progress.update("sources", fraction); });
     }();
     set_geoid(command.bake, geoid);
     command.bake.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };
-    command.bake.resume = command.resume;
-    command.bake.replace = command.replace;
     const planet::BakeReport baked = planet::bake(*field, command.bake, command.output);
     if (target == BakeTarget::finished) {  // of these sources and options, else it were refused
         progress.clear();

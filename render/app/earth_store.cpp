@@ -30,7 +30,8 @@ std::shared_ptr<const ElevationStore> bake_to(const std::filesystem::path& file,
         return std::make_shared<const ElevationStore>(ElevationStore::open(file));
     } catch (const std::exception&) {
         std::error_code ignored;
-        for (const char* ending : {"", "-journal", "-finishing", "-finishing-journal"})
+        for (const char* ending :
+             {"", "-journal", "-finishing", "-finishing-journal", "-beginning", "-beginning-journal"})
             std::filesystem::remove(temporary.native() + ending, ignored);
         return nullptr;
     }

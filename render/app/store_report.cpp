@@ -111,6 +111,9 @@ void fill(Report& report, const planet::StoreMetadata& m, const StoreSummary& su
     report.set("geoid", m.undulation);
     report.set("quantum_m", m.quantum_m);
     report.set("finest_level", m.finest_level);
+    report.set("least_level_asked", m.settings.least_level);
+    report.set("finest_level_asked", m.settings.finest_level);
+    report.set("density_asked", m.settings.extra_levels);
     report.set("spacing_m", spacing_of_level(m.ellipsoid, m.finest_level));
     report.set("height_min_m", summary.least_m);
     report.set("height_max_m", summary.most_m);

@@ -1,4 +1,5 @@
-// The terrain pass against its baseline: the same triangles, vertices, textures and shaders as one static indexed list.
+// What of the frames of a flight the mesh takes, and what is sent to the GPU. And the terrain pass against its baseline:
+// the same triangles, vertices, textures and shaders as one static indexed list.
 // Of the real Earth, so OCTAGLOBE_DATA must name its data; the store and the imagery are those of the user's cache. The
 // two are drawn in turns, each with glFinish and a clock (GL timers are unreliable in software), and compared by the
 // medians of their times: other work on the machine then hits both alike.
@@ -7,7 +8,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <thread>
 
 #include "planet/geodesy/geodetic.h"
@@ -236,6 +239,125 @@ BENCHMARK_CAPTURE(terrain_pass_over_static_list, blanca, blanca)
     ->Iterations(15)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
+
+/// Down to the Sangre de Cristo, at half a pixel: every frame updates and uploads, every drawn_every-th is drawn with the
+/// terrain's shading, without patches of normals, sky and stars. Then at rest.
+class Flight {
+  public:
+    static constexpr int frames = 600, drawn_every = 10;
+
+    struct Times {
+        std::vector<double> update, upload, draw, sent;  // seconds; bytes
+    };
+
+    Times fly() {
+        Times t;
+        for (int frame = 0; frame < frames; ++frame) step(camera(frame), frame % drawn_every == 0, t);
+        return t;
+    }
+    /// Once more, where the flight ends.
+    Times rest() {
+        Times t;
+        for (int frame = 0; frame < 50; ++frame) step(camera(frames - 1), false, t);
+        return t;
+    }
+    std::size_t triangles() const { return segments_.leaf_count(); }
+
+  private:
+    /// From 20,000 km above the ground to 50 m, by the same factor each frame.
+    Camera camera(int frame) const {
+        const double gone = static_cast<double>(frame) / (frames - 1);
+        const double up = std::exp(std::lerp(std::log(20e6), std::log(50.0), gone)), aside = 30 * std::sqrt(up / 20e6);
+        const glm::dvec3 n =
+            planet::normal_from_geodetic((37.58 - aside) * planet::degrees, (-105.49 - aside) * planet::degrees);
+        const double ground = static_cast<double>(w_.field.height(n));
+        return make_camera(planet::ecef_from_normal(wgs84, n, {ground + up}), n,
+                           std::lerp(-60.0, 80.0, gone) * planet::degrees,
+                           std::lerp(-90.0, -4.0, gone) * planet::degrees,
+                           focal_length_px(40 * planet::degrees, width, height), width, height);
+    }
+
+    void step(const Camera& camera, bool drawn, Times& t) {
+        planet::SegmentView view;
+        view.test = {camera.eye, planet::split_reach(camera.focal_px, camera.tan_corner(), 0.5)};
+        view.culling = camera.culling(part, wgs84.b - 600);
+        view.radius_m = wgs84.mean_radius();
+        view.finest_patch_level = w_.finest_level - 10;
+        view.segment_angle = 96 / camera.focal_px;
+        t.update.push_back(seconds([&] { segments_.update(w_.tiles, view, static_cast<int>(w_.threads)); }));
+        layers_.assign(segments_.segments().size(), -1);
+        t.upload.push_back(seconds([&] { pass_.upload(segments_, layers_); }));
+        t.sent.push_back(static_cast<double>(pass_.sent_bytes()));
+        if (drawn) t.draw.push_back(draw(camera));
+    }
+
+    double draw(const Camera& camera) {
+        ViewTable air = make_view_table(tables_, camera.eye, planet::sun_direction(RenderOptions{}.time), w_.threads);
+        air.uniforms.sky_detail.w = w_.texel_m;
+        sky_.set_view(tables_, air, glm::mat3(1));
+        TerrainLook look;
+        look.polar_stretch = (wgs84.a / wgs84.b) * (wgs84.a / wgs84.b);
+        const double up = planet::height_from_ecef(wgs84, camera.eye).m;
+        look.from_afar = !needs_close_up(air.uniforms, std::max(up - 9000, 0.0), 1 / camera.focal_px);
+        w_.bind(sky_, camera, no_patches_);
+        w_.target.clear(0, 0, 0, 1);
+        gl().Finish();
+        return seconds([&] {
+            pass_.draw(camera, part, look);
+            gl().Finish();
+        });
+    }
+
+    static Texture no_patches() {
+        ReliefPatches none;
+        none.build({}, {}, wgs84.mean_radius(), 1);
+        return none.upload();
+    }
+
+    template <class Work>
+    static double seconds(Work&& work) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    World& w_ = world();  // first: the rest needs its context
+    planet::Segments segments_;
+    std::vector<std::int32_t> layers_;
+    TerrainPass pass_;
+    AtmosphereTables tables_ = make_tables();
+    SkyPass sky_{{}, make_noise_levels()};
+    Texture no_patches_ = no_patches();
+};
+
+double mean(const std::vector<double>& v) {
+    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
+double percentile(std::vector<double> v, double share) {
+    const auto at = v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
+    std::nth_element(v.begin(), at, v.end());
+    return *at;
+}
+
+void flight(benchmark::State& state) {
+    Flight flight;
+    for (auto _ : state) {
+        const Flight::Times moving = flight.fly(), rest = flight.rest();
+        const double frame = mean(moving.update) + mean(moving.upload) + mean(moving.draw);
+        state.SetIterationTime(frame);
+        state.counters["update_share"] = mean(moving.update) / frame;
+        state.counters["upload_share"] = mean(moving.upload) / frame;
+        state.counters["update_ms"] = 1e3 * median(moving.update);
+        state.counters["update_p99_ms"] = 1e3 * percentile(moving.update, 0.99);
+        state.counters["draw_ms"] = 1e3 * median(moving.draw);
+        state.counters["sent_kB"] = 1e-3 * median(moving.sent);
+        state.counters["sent_p99_kB"] = 1e-3 * percentile(moving.sent, 0.99);
+        state.counters["rest_update_us"] = 1e6 * median(rest.update);
+        state.counters["rest_sent_B"] = median(rest.sent);
+        state.counters["triangles"] = static_cast<double>(flight.triangles());
+    }
+}
+BENCHMARK(flight)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

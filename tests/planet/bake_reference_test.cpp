@@ -1,6 +1,7 @@
 // The streaming bake against the pedestrian one, and against itself: other threads, less memory, interruptions.
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -342,6 +343,28 @@ TEST_F(BakedFile, ThatIsNotFinishedIsNotDrawn) {
         EXPECT_EQ(e.fault(), Fault::bad_data);
         EXPECT_TRUE(says(e.what(), path("half.octa").string()));
         EXPECT_TRUE(says(e.what(), "--resume"));
+    }
+}
+
+TEST_F(BakedFile, ThatIsDamagedIsNotResumed) {
+    BakeOptions o = options_with_geoid();
+    o.transaction_tiles = 4;
+    ASSERT_TRUE(stopped_at(corner_field(), o, 60, path("a.octa")));
+    sqlite3* db = nullptr;
+    ASSERT_EQ(sqlite3_open(path("a.octa").c_str(), &db), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(db, "UPDATE unfinished SET data = CAST(zeroblob(100) || substr(data, 101) AS BLOB)", nullptr,
+                           nullptr, nullptr),
+              SQLITE_OK);
+    ASSERT_GT(sqlite3_changes(db), 0);
+    sqlite3_close(db);
+    o.resume = true;
+    try {
+        bake(corner_field(), o, path("a.octa"));
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.fault(), Fault::bad_data);
+        EXPECT_TRUE(says(e.what(), "damaged"));
+        EXPECT_TRUE(says(e.what(), "--replace"));
     }
 }
 

@@ -217,13 +217,13 @@ TEST(LayeredField, ThirtyThreeThousandVoidsGiveNoSpike) {
 }
 
 TEST(LayeredField, ABlendInRegionsIsTheWholeBlend) {
-    HoledDem dem(80000, 4000);
+    HoledDem dem(75000, 4000);
     std::sort(dem.hole_list.begin(), dem.hole_list.end());
     const auto fine = dem.field();
     ASSERT_GT(fine->border_size(), 1u << 19);
     const auto world =
         field_of(make_raster(200, 200, {9, 48}, 0.02, [](int c, int r) { return 1900 + 3.0 * c - 2.0 * r; }));
-    const LayeredField both({world, fine}, VerticalDatum::egm96, {}, 6378137, std::size_t{8} << 20);
+    const LayeredField both({world, fine}, VerticalDatum::egm96);
     std::vector<glm::dvec3> border;
     fine->border({{0, 0, 1}, 4}, 1, border);
     std::vector<BorderBlend::Point> points;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 #include "planet/elevation/blocked_raster.h"
 #include "planet/elevation/constant_field.h"
@@ -249,6 +250,40 @@ TEST(ElevationSources, TilesOfAPatternAreOneMosaicWithoutSeams) {
     }
     EXPECT_EQ(open_sources({{folder / "*.vrt"}})->sources()[0].checksum,
               open_sources({{folder / "*.vrt"}}, {}, true)->sources()[0].checksum);
+}
+
+// As they are distributed: 1201 x 1201 big-endian shorts, the place in the name, borders shared, -32768 for voids.
+TEST(ElevationSources, TilesOfSrtmAreSeamless) {
+    const TemporaryFolder folder;
+    const auto H = [](int c, int r) { return relief(c / 3, r / 3) + c % 3; };  // counted from 10 E, 49 N
+    for (const auto& [name, column, row] :
+         {std::tuple{"N48E010.hgt", 0, 0}, {"N48E011.hgt", 1200, 0}, {"N47E011.hgt", 1200, 1200}}) {
+        std::string bytes;
+        for (int r = 0; r <= 1200; ++r)
+            for (int c = 0; c <= 1200; ++c) {
+                const int v = c == 600 && r == 700 ? -32768 : H(column + c, row + r);
+                bytes += static_cast<char>(v >> 8 & 255);
+                bytes += static_cast<char>(v & 255);
+            }
+        write_bytes(folder / name, bytes);
+    }
+    for (const bool in_blocks : {false, true}) {
+        const auto field = open_sources({{folder / "*.hgt"}}, {}, in_blocks);
+        ASSERT_EQ(field->sources().size(), 1u);
+        EXPECT_EQ(field->sources()[0].crs, "EPSG:4326");
+        const auto at = [&](double c, double r) { return field->height(at_degrees(49 - r / 1200, 10 + c / 1200)); };
+        for (int r = 3; r < 1200; r += 13)
+            for (const double c : {0.0, 3.0, 1197.0, 1199.0, 1200.0, 1201.0, 1203.0, 2400.0})
+                ASSERT_NEAR(at(c, r), H(static_cast<int>(c), r), 0.01) << c << " " << r;
+        for (int c = 1210; c < 2390; c += 7) ASSERT_NEAR(at(c, 1200), H(c, 1200), 0.01) << c;
+        // Across the border of two tiles the surface is the bicubic one, with samples of both.
+        const double t = 0.5, expected = -0.0625 * (H(1198, 50) + H(1201, 50)) + 0.5625 * (H(1199, 50) + H(1200, 50));
+        EXPECT_NEAR(at(1199 + t, 50), expected, 0.05);
+        std::vector<glm::dvec3> n;
+        std::vector<float> h;
+        field->samples({{0, 0, 1}, 4}, n, h);
+        EXPECT_EQ(n.size(), 3u * 1201 * 1201 - 2 * 1201 - 3);  // shared rows and columns once; the voids not
+    }
 }
 
 TEST(ElevationSources, FilesThatDifferAreLayersAndLaterOnesLieOnTop) {

@@ -20,6 +20,37 @@
 
 namespace planet::testing {
 
+/// The records of one tile, a cell at a time. Spans are by local index, but `rounded` by vertex index.
+struct Saturation {
+    const TileLayout& layout;
+    int depth;
+    std::span<float> deviation, radius;
+    std::span<const glm::vec3> rounded;
+    std::span<const std::uint8_t> exists;
+
+    /// Raises record i over the diamonds of its two children in the same tile; 0 if it does not exist.
+    void raise(unsigned i) const {
+        if (!exists[i]) {
+            deviation[i] = radius[i] = 0;
+            return;
+        }
+        if (i >> (depth - 1)) return;
+        const glm::vec3& m = rounded[layout.split_vertex[i]];
+        double reach = 0;
+        for (unsigned child = 2 * i; child < 2 * i + 2; ++child) {
+            if (!exists[child]) continue;
+            deviation[i] = std::max(deviation[i], deviation[child]);
+            reach = std::max(reach, radius_over(m, rounded[layout.split_vertex[child]], radius[child]));
+        }
+        radius[i] = std::max(radius[i], certified_radius(reach));
+    }
+    /// Gives both cells of the diamond i inside the tile the larger numbers.
+    void join(unsigned i, unsigned beyond) const {
+        deviation[i] = deviation[beyond] = std::max(deviation[i], deviation[beyond]);
+        radius[i] = radius[beyond] = std::max(radius[i], radius[beyond]);
+    }
+};
+
 struct LinkedTile {
     Tile tile;
     std::vector<glm::vec3> rounded;

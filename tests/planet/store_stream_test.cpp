@@ -101,6 +101,12 @@ TEST(PlacedTile, KnowsWhereTilesAreBelow) {
     }
 }
 
+ResidentTile& insert(ResidentSet& set, LocationCode root) {
+    std::unique_ptr<PlacedTile> tile = placed(root);
+    const int depth = tile->depth;
+    return set.insert(std::move(tile), tile_support(root, depth));
+}
+
 // ---- the set of tiles in memory -------------------------------------------------------------------------------------
 
 /// The rule as it is written, without any memory.
@@ -143,14 +149,14 @@ bool change_at_random(ResidentSet& set, std::mt19937& random) {
         return true;
     }
     if (root.bisection_level() > 0 && !set.find(root.ancestor(root.bisection_level() - tile_levels))) return false;
-    set.insert(placed(root));
+    insert(set, root);
     return true;
 }
 
 TEST(ResidentSet, TheRuleHoldsAfterAnyChanges) {
     std::mt19937 random(1);
     ResidentSet set;
-    for (int face = 0; face < face_count; ++face) set.insert(placed(LocationCode::face_root(face)));
+    for (int face = 0; face < face_count; ++face) insert(set, LocationCode::face_root(face));
     set.settle();
     expect_rule(set);
     for (int step = 0; step < 40; ++step) {
@@ -162,7 +168,7 @@ TEST(ResidentSet, TheRuleHoldsAfterAnyChanges) {
 
 TEST(ResidentSet, EveryDiamondIsOpenWhereAllTilesAreThere) {
     ResidentSet set;
-    for (const LocationCode root : store().tiles()) set.insert(placed(root));
+    for (const LocationCode root : store().tiles()) insert(set, root);
     set.settle();
     for (const ResidentTile* t : set.all())
         for (unsigned i = 1; i < 1u << t->tile->depth; ++i) ASSERT_EQ(t->tile->is_open(i), t->tile->is_stored(i));
@@ -173,7 +179,7 @@ TEST(ResidentSet, EveryDiamondIsOpenWhereAllTilesAreThere) {
 TEST(ResidentSet, NoWalkMeetsACrackWhicheverTilesAreThere) {
     std::mt19937 random(2);
     ResidentSet set;
-    for (int face = 0; face < face_count; ++face) set.insert(placed(LocationCode::face_root(face)));
+    for (int face = 0; face < face_count; ++face) insert(set, LocationCode::face_root(face));
     std::size_t triangles = 0;
     for (int step = 0; step < 24; ++step) {
         for (int changes = 0; changes < 40;) changes += change_at_random(set, random);
@@ -191,7 +197,7 @@ TEST(ResidentSet, NoWalkMeetsACrackWhicheverTilesAreThere) {
 TEST(ResidentSet, ChangesNameEveryCellThatIsSplitOtherwise) {
     std::mt19937 random(3);
     ResidentSet set;
-    for (int face = 0; face < face_count; ++face) set.insert(placed(LocationCode::face_root(face)));
+    for (int face = 0; face < face_count; ++face) insert(set, LocationCode::face_root(face));
     set.settle();
     set.take_changes();
     const auto open_cells = [&set] {
@@ -233,7 +239,7 @@ TEST(ResidentSet, ATileAndItsSupportOpenAllItsDiamonds) {
             if (set.find(r)) return;
             if (r.bisection_level() > 0) add(r.ancestor(r.bisection_level() - tile_levels));
             if (!store().read(r)) return;
-            const std::size_t supporting = set.insert(placed(r)).support.size();
+            const std::size_t supporting = insert(set, r).support.size();
             if (r.bisection_level() > 0) most = std::max(most, supporting);
         };
         // The tile, those above all of its support with theirs, and so on up.
@@ -262,7 +268,7 @@ TEST(ResidentSet, ATileAndItsSupportOpenAllItsDiamonds) {
 // ---- loading by other threads ---------------------------------------------------------------------------------------
 
 LoadedTile nothing(LocationCode root) {
-    return {root, nullptr, false};
+    return {root, nullptr, false, {}};
 }
 
 TEST(TileLoader, LoadsTheMostWantedFirst) {
@@ -575,6 +581,37 @@ TEST(ResidentTiles, WhatLiesAheadIsThereWhenTheEyeArrives) {
     }
     tiles.update(later);
     EXPECT_EQ(tiles.residency().pending, 0u);
+}
+
+// With room for nothing, a little or all of what lies ahead: loading comes to an end, and what is needed now stays.
+TEST(ResidentTiles, WhatLiesAheadTakesOnlyTheMemoryThatIsLeft) {
+    const SegmentView now = view_from(testing::PatchyField::patches[1].cap.centre, 1e5, 400),
+                      later = view_from(testing::PatchyField::patches[2].cap.centre, 1e5, 2000);
+    std::size_t needed = 0;
+    {
+        const TileCache cache(store());
+        ResidentTiles tiles(cache, {}, 2);
+        tiles.settle(now);
+        needed = tiles.counts().tile_bytes;
+    }
+    std::vector<std::size_t> loaded;
+    for (const std::size_t limit : {needed / 2, needed + 700'000, needed + 100'000'000}) {
+        const TileCache cache(store(), limit);
+        ResidentTiles tiles(cache, {}, 2);
+        tiles.settle(now);
+        const ResidentCounts settled = tiles.counts();
+        tiles.update(now, &later);
+        while (tiles.on_their_way() > 0) {
+            tiles.wait();
+            tiles.update(now, &later);
+            ASSERT_EQ(tiles.residency().pending, 0u);
+        }
+        EXPECT_LE(tiles.counts().tile_bytes, std::max(settled.tile_bytes, limit + 300'000)) << limit;
+        loaded.push_back(tiles.counts().tiles_loaded - settled.tiles_loaded);
+    }
+    EXPECT_EQ(loaded[0], 0u);
+    EXPECT_GT(loaded[1], 0u);
+    EXPECT_GT(loaded[2], loaded[1] + 10);
 }
 
 TEST(ResidentTiles, AnotherExaggerationLoadsNothing) {

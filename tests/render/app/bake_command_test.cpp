@@ -336,7 +336,8 @@ TEST(BakeCommand, ResumingAFinishedStoreDoesNothing) {
     hilly_terrain().write(folder / "dem.vrt");
     bake(folder, "dem.vrt");
     const std::string before = content(folder / "store.octa");
-    for (const char* arguments : {"bake dem.vrt --resume -o store.octa", "bake --resume -o store.octa"}) {
+    for (const char* arguments : {"bake dem.vrt --least-level 12 --resume -o store.octa",
+                                  "bake --least-level 12 --resume -o store.octa", "bake --resume -o store.octa"}) {
         const Outcome outcome = run(folder.path(), words(arguments));
         EXPECT_EQ(outcome.status, 0) << outcome.err;
         EXPECT_EQ(outcome.out, "store.octa is finished\n");

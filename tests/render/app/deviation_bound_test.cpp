@@ -126,13 +126,16 @@ Found measure(const planet::Segments& segments, const FinestLattice& lattice, co
 }
 
 TEST(DeviationBound, HoldsAtEveryVertexOfTheFinestLattice) {
-    constexpr std::size_t count = 52;  // for each exaggeration
+    constexpr struct {
+        double factor;
+        std::size_t views;
+    } exaggerations[] = {{1, 52}, {5, 52}, {0.3, 10}, {30, 10}};
     constexpr double limits[] = {0.5, 1, 4};
     const auto store = bake_thinned();
     std::size_t vertices = 0, in_picture = 0;
     double nearest_metres = 0, nearest_pixels = 0;
     planet::Segments segments;
-    for (const double exaggeration : {1.0, 5.0}) {
+    for (const auto [exaggeration, count] : exaggerations) {
         const ExaggeratedEarth earth(store, exaggeration);
         const FinestLattice lattice(*store, exaggeration);
         EarthViews views(640, 480, 11, 140);

@@ -235,7 +235,7 @@ void bake_half(const StoreFolder& folder) {
     command.bake.transaction_tiles = 4;
     struct Stop {};
     command.bake.progress = [](std::string_view step, double fraction) {
-        if (step == "tiles" && fraction > 0.9) throw Stop();
+        if (step == "tiles" && fraction > 0.3) throw Stop();
     };
     const auto field = open_bake_sources(command, geoid, std::size_t{64} << 20, {});
     EXPECT_THROW(planet::bake(*field, command.bake, folder / "bad.octa"), Stop);
@@ -259,7 +259,6 @@ TEST(StoreRefusal, AnUnfinishedStoreIsNotDrawn) {
     ASSERT_EQ(run(folder.path(), words("info bad.octa --json i.json")).status, 0);
     const auto info = nlohmann::json::parse(content(folder / "i.json"));
     EXPECT_EQ(info.at("complete"), false);
-    EXPECT_GT(info.at("done"), 0);
     EXPECT_LT(info.at("done"), 1);
     EXPECT_GT(info.at("tiles_planned"), info.at("tiles"));
 }
@@ -372,8 +371,9 @@ TEST(StoreRefusal, BadBakes) {
         {"bake dem.vrt -o ''", 2, "--output: empty file name"},
         {"bake dem.vrt -o no/such/folder/x.octa", 2, "--output: 'no/such/folder/x.octa' cannot be written"},
         {"bake dem.vrt -o tiles", 2, "--output: 'tiles' is not a file"},
-        {"bake dem.vrt -o dem.vrt", 2, "--output: 'dem.vrt' is there, and no elevation store"},
-        {"bake dem.vrt -o dem.vrt --replace", 2, "--output: 'dem.vrt' is there, and no elevation store"},
+        {"bake dem.vrt -o dem.vrt", 2, "--output: 'dem.vrt' is one of the sources"},
+        {"bake dem.vrt -o text.tif", 2, "--output: 'text.tif' is there, and no elevation store"},
+        {"bake dem.vrt -o text.tif --replace", 2, "--output: 'text.tif' is there, and no elevation store"},
         {"bake dem.vrt -o store.octa", 2, "--output: 'store.octa' is a finished store"},
         {"bake dem.vrt -o x.octa --resume --replace", 2, "bake: --"},
         {"bake dem.vrt dem.vrt -o x.octa", 2, "dem.vrt: is a source twice"},
