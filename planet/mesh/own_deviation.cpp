@@ -2,6 +2,7 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cstring>
 
 #include "planet/mesh/deviation.h"
 #include "planet/mesh/lanes.h"
@@ -210,11 +211,11 @@ void measure_leaf(const TileLattice& lattice, std::span<const std::uint8_t> exis
                   std::span<float> radius) {
     const unsigned last = 1u << (lattice.depth() - 1);
     measure_cells(lattice, deviation, radius.data());
-    radius[0] = 0;
-    for (unsigned i = 1; i < last; ++i) {
-        const bool lacks = exists[i] && !(exists[2 * i] & exists[2 * i + 1]);
-        radius[i] = lacks ? certified_radius(corner_distance(lattice, i)) : 0.0f;
-    }
+    std::fill_n(radius.begin(), last, 0.0f);
+    if (std::memchr(exists.data() + 1, 0, exists.size() - 1) == nullptr) return;
+    for (unsigned i = 1; i < last; ++i)
+        if (exists[i] && !(exists[2 * i] & exists[2 * i + 1]))
+            radius[i] = certified_radius(corner_distance(lattice, i));
     for (unsigned i = last; i < 2 * last; ++i) radius[i] = exists[i] ? radius[i] : 0.0f;
 }
 

@@ -22,14 +22,14 @@ class TileSaturation {
     /// @param level relative, 0..depth-1 @param exists by local index; a record that does not exist becomes 0
     /// @param deviation, radius by local index: in, each cell's own deviation, and its corner_distance() rounded up
     /// where it lacks a child diamond, else 0
-    void level(int level, std::span<const std::uint8_t> exists, std::span<float> deviation, std::span<float> radius);
+    void level(int level, std::span<const std::uint8_t> exists, std::span<float> deviation,
+               std::span<float> radius) const;
 
   private:
-    void raise(unsigned first, std::span<const std::uint8_t> exists, const float* deviation, const float* radius);
+    void raise(unsigned first, float* deviation, float* radius) const;
 
     int depth_ = 0;
-    std::vector<float> x_, y_, z_;           // of the split vertex, by local index
-    std::vector<float> deviation_, radius_;  // of a level's cells before the larger one of a diamond is taken
+    std::vector<float> x_, y_, z_;  // of the split vertex, by local index
 };
 
 }  // namespace planet

@@ -6,63 +6,68 @@
 #include <vector>
 
 #include "planet/elevation/raster_field.h"
-#include "planet/mesh/deviation.h"
-#include "planet/octahedron/cell_metrics.h"
+#include "planet/mesh/saturation.h"
 #include "planet/store/bake.h"
-#include "planet/store/bake_settling.h"
+#include "planet/store/baked_tile.h"
 #include "planet/store/ladder.h"
 #include "planet/store/tile_codec.h"
+#include "planet/store/tile_sides.h"
 
 namespace planet::bench {
 
-/// The DEM of the Sangre de Cristo alone, above the ellipsoid, in quanta of 0.25 m: about 2.5 million vertices.
+/// The DEM of the Sangre de Cristo alone, above the ellipsoid, in quanta of 0.25 m: five million vertices.
 struct BakeScene {
     std::shared_ptr<const RasterField> field =
         open_raster_field(OCTAGLOBE_SOURCE_DIR "/data/sangre_de_cristo.tif", VerticalDatum::ellipsoid);
     TileScale scale;
-    std::vector<BakedTile> tiles;          ///< leaf tiles, as they were encoded
-    std::vector<const BakedTile*> leaves;  ///< whole leaf tiles of the depth that most of them have
+    std::vector<BakedTile> tiles;
+    std::vector<const BakedTile*> leaves;  ///< whole leaf tiles amid the DEM
     std::size_t leaf_vertices = 0;
 
     BakeScene() {
         const ElevationStore store = bake_in_memory(*field, {});
-        for (const LocationCode root : store.tiles()) {
-            std::optional<Tile> tile = store.read(root);
-            if (tile->child_exists.none()) tiles.push_back(baked(std::move(*tile)));
-        }
-        choose_leaves();
+        for (const LocationCode root : store.tiles()) tiles.push_back(as_baked(*store.read(root)));
+        for (const BakedTile& t : tiles)
+            if (!t.inner() && t.tile.min_height > 0 && std::count(t.exists.begin(), t.exists.end(), 0) == 1)
+                leaves.push_back(&t);
+        for (const BakedTile* t : leaves) leaf_vertices += t->tile.height.size();
     }
 
-    /// What the tile's sides have above what the tile itself arrives at: as in the bake.
-    BakedTile baked(Tile tile) const {
+    /// What a bake encodes: with how far the records of the sides lie above what the tile itself arrives at.
+    BakedTile as_baked(const Tile& tile) const {
         BakedTile baked;
-        for (const float deviation : tile.deviation) baked.exists.push_back(deviation > 0);
+        baked.tile = tile;
+        baked.has_tiles_below = tile.child_exists.any();
+        for (const float d : tile.deviation) baked.exists.push_back(d > 0);
+        if (!baked.inner()) find_gains(baked);
+        return baked;
+    }
+
+    void find_gains(BakedTile& baked) const {
+        const Tile& tile = baked.tile;
         TileLattice lattice;
         lattice.set_normals(corners(tile.root), tile.depth);
         lattice.set_positions(scale.placement, tile.height, {}, baked.exists);
         std::vector<float> deviation(baked.exists.size()), radius(baked.exists.size());
         measure_leaf(lattice, baked.exists, deviation, radius);
-        TileRecords records;
-        records.depth = tile.depth;
-        std::ranges::copy(lattice.rounded(), records.position.begin());
-        records.set_own(deviation, radius, baked.exists);
+        TileSaturation saturation;
+        saturation.start(tile.depth, lattice.rounded());
         const auto sides = side_cells(tile.depth);
-        std::vector<SideSteps> settled, mine(sides.size());
-        for (const SideCell& s : sides)
-            settled.push_back({static_cast<std::uint16_t>(deviation_code(tile.deviation[s.cell])),
-                               static_cast<std::uint16_t>(radius_code(tile.radius[s.cell]))});
-        records.settle(settled, mine);
-        for (std::size_t k = 0; k < sides.size(); ++k)
-            baked.gain.push_back({static_cast<std::uint16_t>(settled[k].deviation - mine[k].deviation),
-                                  static_cast<std::uint16_t>(settled[k].radius - mine[k].radius)});
-        baked.tile = std::move(tile);
-        return baked;
-    }
-
-    void choose_leaves() {
-        for (const BakedTile& t : tiles)
-            if (t.tile.min_height > 0 && std::ranges::count(t.exists, 0) == 1) leaves.push_back(&t);
-        for (const BakedTile* t : leaves) leaf_vertices += t->tile.height.size();
+        baked.gain.resize(sides.size());
+        for (int level = tile.depth - 1; level >= 0; --level) {
+            saturation.level(level, baked.exists, deviation, radius);
+            for (std::size_t k = 0; k < sides.size(); ++k) {
+                const unsigned i = sides[k].cell;
+                if (relative_level(i) != level || !baked.exists[i]) continue;
+                const auto gain = [](unsigned settled, unsigned own) {
+                    return static_cast<std::uint16_t>(settled - own);
+                };
+                baked.gain[k] = {gain(deviation_code(tile.deviation[i]), deviation_code(deviation[i])),
+                                 gain(radius_code(tile.radius[i]), radius_code(radius[i]))};
+                deviation[i] = tile.deviation[i];
+                radius[i] = tile.radius[i];
+            }
+        }
     }
 };
 
