@@ -50,7 +50,7 @@ void TileLoader::wait(std::size_t tiles) {
 
 std::size_t TileLoader::on_their_way() const {
     const std::lock_guard lock(mutex_);
-    return waiting_.size() + loading_;
+    return waiting_.size() + loading_ + loaded_.size();
 }
 
 void TileLoader::work(const std::stop_token& stop) {

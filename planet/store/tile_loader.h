@@ -47,7 +47,7 @@ class TileLoader {
     std::vector<LoadedTile> take();
     /// Returns once take() has this many to give or throws, or nothing more is on its way.
     void wait(std::size_t tiles = 1);
-    /// How many tiles are requested or being loaded.
+    /// How many tiles are requested, being loaded, or loaded and not taken.
     std::size_t on_their_way() const;
 
   private:
