@@ -408,6 +408,32 @@ bool Delaunay::constrain(Index a, Index b) {
     return true;
 }
 
+void Delaunay::release(Index e) {
+    constrained_[e] = 0;
+    if (twin_[e] != none) constrained_[twin_[e]] = 0;
+    changed_.clear();
+    std::vector<Index> ends{origin_[e], origin_[next(e)]};
+    make_delaunay(ends);
+}
+
+Delaunay Delaunay::compacted() const {
+    glm::ivec2 low(max_coordinate), high(-max_coordinate);
+    for (Index v = 0; v < vertex_slots(); ++v)
+        if (vertex_alive(v)) {
+            low = glm::min(low, point_[v]);
+            high = glm::max(high, point_[v]);
+        }
+    Delaunay out(low, high);
+    out.reserve(triangle_count());
+    std::vector<Index> number(vertex_slots(), none);
+    for (Index v = 0; v < vertex_slots(); ++v)
+        if (vertex_alive(v)) number[v] = out.insert(point_[v]);
+    for (Index e = 0; e < origin_.size() && has_constraints(); ++e)
+        if (alive(e / 3) && constrained(e) && (twin_[e] == none || e < twin_[e]))
+            out.constrain(number[origin_[e]], number[origin_[next(e)]]);
+    return out;
+}
+
 // ---- the check ----
 
 std::string Delaunay::check() const {

@@ -123,10 +123,16 @@ class Delaunay {
     /// @return false, and nothing changes, if it crosses a constrained side: crossed() has both its ends
     bool constrain(Index a, Index b);
     std::array<Index, 2> crossed() const { return crossed_; }
+    /// Makes a constrained side one like any other.
+    void release(Index e);
     bool constrained(Index e) const { return !constrained_.empty() && constrained_[e] != 0; }
     bool has_constraints() const { return !constrained_.empty(); }
     /// Whether a side joins two vertices. @return a half-edge from a to b, or none
     Index side_between(Index a, Index b) const;
+
+    /// The same triangulation without unused slots: vertices in their present order. Which diagonals cocircular points have
+    /// may differ.
+    Delaunay compacted() const;
 
     /// Room for so many triangles.
     void reserve(std::size_t triangles);
