@@ -40,26 +40,24 @@ class CellFinder : public TriangleFinder {
         reach_.resize(mesh.triangle_slots());
         for (const Index t : changed) {
             for_each_cell(reach_[t], [&](std::vector<Index>& list, glm::dvec2) {
-                const auto at = std::find(list.begin(), list.end(), t);
-                if (at == list.end()) return;
-                *at = list.back();
-                list.pop_back();
+                const auto at = std::lower_bound(list.begin(), list.end(), t);
+                if (at != list.end() && *at == t) list.erase(at);
             });
             const Circle circle = circumcircle(mesh.corners(t));
             reach_[t] = {cell_of(circle.centre - circle.radius), cell_of(circle.centre + circle.radius)};
             for_each_cell(reach_[t], [&](std::vector<Index>& list, glm::dvec2 corner) {
                 const glm::dvec2 nearest = glm::clamp(circle.centre, corner, corner + cell_);
-                if (glm::distance(nearest, circle.centre) <= circle.radius) list.push_back(t);
+                if (glm::distance(nearest, circle.centre) > circle.radius) return;
+                list.insert(std::lower_bound(list.begin(), list.end(), t), t);
             });
         }
     }
 
     Index find(const Delaunay& mesh, glm::ivec2 sample) const override {
         const glm::ivec2 cell = cell_of(glm::dvec2(sample));
-        Index lowest = Delaunay::none;
         for (const Index t : lists_[static_cast<std::size_t>(cell.y * side + cell.x)])
-            if (t < lowest && holds(mesh, t, sample)) lowest = t;
-        return lowest;
+            if (holds(mesh, t, sample)) return t;
+        return Delaunay::none;
     }
 
   private:
@@ -79,9 +77,9 @@ class CellFinder : public TriangleFinder {
     }
 
     glm::ivec2 low_;
-    glm::dvec2 cell_;  ///< its size
-    std::array<std::vector<Index>, std::size_t{side} * side> lists_;
-    std::vector<Reach> reach_;  ///< by triangle
+    glm::dvec2 cell_;                                                 ///< its size
+    std::array<std::vector<Index>, std::size_t{side} * side> lists_;  ///< ascending
+    std::vector<Reach> reach_;                                        ///< by triangle
 };
 
 }  // namespace
