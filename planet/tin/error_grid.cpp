@@ -68,7 +68,9 @@ void ErrorGrid::measure_spans(const Delaunay& mesh, std::span<const Index> chang
         const scan::ScaledDistances<double> distances(grid_, s);
         for_each_span(s, [&](int y, int first, int last) {
             for (int x = first; x <= last; x += scan::lanes) {
-                const scan::Values<double> d = distances.at(x, y) / distances.area();
+                scan::Values<double> d;
+                distances.at(x, y, d);
+                d /= distances.area();
                 for (int i = 0; i < scan::lanes && x + i <= last; ++i) at({x + i, y}) = d[i] > 0 ? d[i] : 0;
             }
             measured_ += static_cast<std::size_t>(std::max(0, last - first + 1));

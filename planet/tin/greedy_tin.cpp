@@ -232,8 +232,7 @@ std::vector<float> deviation_grid(const Delaunay& mesh, const HeightGrid& grid) 
         const SortedTriangle s = sorted_triangle(mesh, grid, t);
         const scan::ScaledDistances<double> distances(grid, s);
         for_each_span(s, [&](int y, int first, int last) {
-            for (int x = first; x <= last; ++x)
-                at({x, y}) = static_cast<float>(distances.at(x, y)[0] / distances.area());
+            for (int x = first; x <= last; ++x) at({x, y}) = static_cast<float>(distances.one(x, y));
             return true;
         });
         for (const glm::ivec2 corner : mesh.corners(t))

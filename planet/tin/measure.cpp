@@ -39,7 +39,9 @@ class SummedMeasure : public TinMeasure {
         Values<double> total{};
         for_each_span(t, [&](int y, int first, int last) {
             for (int x = first; x <= last; x += lanes) {
-                const Values<double> d = distances.at(x, y) / distances.area();
+                Values<double> d;
+                distances.at(x, y, d);
+                d /= distances.area();
                 const Places<double> counts = (count_up<double> <= last - x) & (d >= 0);  // no void is >= 0
                 total += counts ? (squared_ ? d * d : d) : Values<double>{};
             }

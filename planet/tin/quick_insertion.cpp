@@ -33,7 +33,7 @@ class QuickInsertion {
     void work_off_queue() {
         while (!queue_.empty()) {
             const std::uint16_t bucket = queue_.top_bucket();
-            const Index t = queue_.pop();
+            const Index t = queue_.pop(bucket);
             if (waiting_[t].bucket != bucket) continue;
             if (waiting_[t].worst.sample.x < 0)
                 examine(t);
@@ -90,7 +90,7 @@ class QuickInsertion {
         WorstSample<Real> worst;
         for_each_span(s, [&](int y, int first, int last) {
             for (int x = first; x <= last; ++x) {
-                const Real d = distances.at(x, y)[0] / distances.area();
+                const Real d = distances.one(x, y);
                 if (d > worst.deviation && !on_border({x, y})) worst = {d, {x, y}};
             }
             return true;

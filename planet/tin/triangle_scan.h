@@ -146,13 +146,19 @@ class ScaledDistances {
           slope_(static_cast<Real>(plane_.per_column)),
           area_(static_cast<Real>(t.area)) {}
     Real area() const { return area_ < 0 ? -area_ : area_; }
-    Values<Real> at(int x, int y) const {
+    /// @param out not returned: processors without such wide registers have no one way to
+    void at(int x, int y, Values<Real>& out) const {
         Floats h;
         std::memcpy(&h, grid_.row(y) + x, sizeof h);
         const auto start = static_cast<Real>(plane_.per_row * (y - a_.y) + plane_.per_column * (x - a_.x));
-        const Values<Real> d =
-            (__builtin_convertvector(h, Values<Real>) - base_) * area_ - (start + slope_ * ramp<Real>);
-        return d < 0 ? -d : d;
+        out = (__builtin_convertvector(h, Values<Real>) - base_) * area_ - (start + slope_ * ramp<Real>);
+        out = out < 0 ? -out : out;
+    }
+    /// Of one sample, not times the area: metres.
+    Real one(int x, int y) const {
+        Values<Real> d;
+        at(x, y, d);
+        return d[0] / area();
     }
 
   private:
@@ -183,7 +189,8 @@ WorstSample<Real> worst_sample(const HeightGrid& grid, const SortedTriangle& t, 
     const int left = std::min({t.a.x, t.b.x, t.c.x});
     for_each_span(t, [&](int y, int first, int last) {
         for (int x = first; x <= last; x += lanes) {
-            const Values<Real> d = distances.at(x, y);
+            Values<Real> d;
+            distances.at(x, y, d);
             const Places<Real> better = (d > worst) & (count_up<Real> <= last - x);
             worst = better ? d : worst;
             const auto packed = static_cast<unsigned>(y - t.a.y) << 16 | static_cast<unsigned>(x - left);
@@ -209,7 +216,11 @@ inline bool within(const HeightGrid& grid, const SortedTriangle& t, float tolera
     bool all = true;
     for_each_span(t, [&](int y, int first, int last) {
         Places<float> over{};
-        for (int x = first; x <= last; x += lanes) over |= (distances.at(x, y) > bound) & (count_up<float> <= last - x);
+        for (int x = first; x <= last; x += lanes) {
+            Values<float> d;
+            distances.at(x, y, d);
+            over |= (d > bound) & (count_up<float> <= last - x);
+        }
         for (int i = 0; i < lanes; ++i) all = all && over[i] == 0;
         return all;
     });
