@@ -1,5 +1,6 @@
 #pragma once
-// A priority queue of triangles in no strict order: sixteen buckets an octave of the key, last in first out within each.
+// A priority queue of triangles in no strict order: sixteen buckets an octave of the key, last in first out within
+// each.
 
 #include <array>
 #include <bit>
@@ -8,7 +9,8 @@
 
 namespace planet {
 
-/// An element may be pushed again with another key: whoever takes elements out checks that its key still is what it was.
+/// An element may be pushed again with another key: whoever takes elements out checks that its key still is what it
+/// was.
 class BucketQueue {
   public:
     static constexpr std::uint16_t none = 0xffff;  ///< no bucket

@@ -1,7 +1,7 @@
 #pragma once
 // A Delaunay triangulation of a rectangle of integer points, that points go into and out of one at a time, in arrays of
-// half-edges. Coordinates are integers, so every orientation and in-circle test is exact and no input is degenerate: grids,
-// collinear and cocircular points are as good as any. It knows nothing of what its points stand for.
+// half-edges. Coordinates are integers, so every orientation and in-circle test is exact and no input is degenerate:
+// grids, collinear and cocircular points are as good as any. It knows nothing of what its points stand for.
 //
 //               c                     half-edges of triangle t: 3t, 3t + 1, 3t + 2, counter-clockwise (x right, y up)
 //              / \                    origin(e): the vertex where e begins
@@ -10,9 +10,10 @@
 //           a-------b
 //              3t
 //
-// Insertion (Bowyer and Watson): triangles whose circle holds the point go, and the point is joined to what surrounds the
-// cavity. Removal: the star of a vertex goes, and ears whose circle holds no corner of the polygon are cut off until it is
-// filled. Both are planned first and done on request, so that a caller can look at the triangles that would be.
+// Insertion (Bowyer and Watson): triangles whose circle holds the point go, and the point is joined to what surrounds
+// the cavity. Removal: the star of a vertex goes, and ears whose circle holds no corner of the polygon are cut off
+// until it is filled. Both are planned first and done on request, so that a caller can look at the triangles that would
+// be.
 
 #include <array>
 #include <cstdint>
@@ -92,8 +93,8 @@ class Delaunay {
 
     /// Finds the triangles that a point would make. @param at where it lies, at no vertex
     void plan_insertion(glm::ivec2 p, const Location& at);
-    /// Their other corners, in order about the point: triangle i would be (point, ring()[i], ring()[i + 1]), the last one
-    /// back to ring()[0] unless the point is on the border (open_ring()).
+    /// Their other corners, in order about the point: triangle i would be (point, ring()[i], ring()[i + 1]), the last
+    /// one back to ring()[0] unless the point is on the border (open_ring()).
     std::span<const Index> ring() const { return ring_; }
     bool open_ring() const { return open_; }
     /// Triangles that would go: they hold what the new ones hold.
@@ -106,8 +107,8 @@ class Delaunay {
 
     // ---- removal ----
 
-    /// Finds the triangles that would fill the star of a vertex. @return false if it is on the border, ends or lies on a
-    /// constrained side, or constrained sides about it leave no Delaunay filling
+    /// Finds the triangles that would fill the star of a vertex. @return false if it is on the border, ends or lies on
+    /// a constrained side, or constrained sides about it leave no Delaunay filling
     bool plan_removal(Index v);
     /// Triangles that would be.
     std::span<const std::array<Index, 3>> filling() const { return filling_; }
@@ -119,7 +120,8 @@ class Delaunay {
 
     // ---- constrained sides ----
 
-    /// Makes the straight line between two vertices sides of the triangulation that stay; vertices on the way divide it.
+    /// Makes the straight line between two vertices sides of the triangulation that stay; vertices on the way divide
+    /// it.
     /// @return false, and nothing changes, if it crosses a constrained side: crossed() has both its ends
     bool constrain(Index a, Index b);
     std::array<Index, 2> crossed() const { return crossed_; }
@@ -130,15 +132,15 @@ class Delaunay {
     /// Whether a side joins two vertices. @return a half-edge from a to b, or none
     Index side_between(Index a, Index b) const;
 
-    /// The same triangulation without unused slots: vertices in their present order. Which diagonals cocircular points have
-    /// may differ.
+    /// The same triangulation without unused slots: vertices in their present order. Which diagonals cocircular points
+    /// have may differ.
     Delaunay compacted() const;
 
     /// Room for so many triangles.
     void reserve(std::size_t triangles);
 
-    /// Empty if all links fit, every triangle turns left, every side that is not constrained is Delaunay and the whole is a
-    /// disc without holes; else the first thing that is wrong.
+    /// Empty if all links fit, every triangle turns left, every side that is not constrained is Delaunay and the whole
+    /// is a disc without holes; else the first thing that is wrong.
     std::string check() const;
 
   private:
@@ -157,6 +159,7 @@ class Delaunay {
     bool collect_star(Index v);
     bool is_ear(std::span<const Index> polygon, std::size_t i) const;
     void flip(Index e);
+    void force_side(Index from, Index to, std::span<const Index> sides);
     void make_delaunay(std::vector<Index>& ends);
 
     std::vector<glm::ivec2> point_;

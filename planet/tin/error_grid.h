@@ -1,6 +1,6 @@
 #pragma once
-// The iterative TIN as Raudins describes it: the deviation of every sample in a grid, of which each insertion makes a part
-// dirty; that part is measured again, then the largest value anywhere is inserted next.
+// The iterative TIN as Raudins describes it: the deviation of every sample in a grid, of which each insertion makes a
+// part dirty; that part is measured again, then the largest value anywhere is inserted next.
 // insert_greedily() makes the same TIN without a grid; this is what it is compared with, and what can be shown.
 
 #include <memory>
@@ -16,9 +16,9 @@ class ErrorGrid {
     /// @param grid stays as long as this
     ErrorGrid(const HeightGrid& grid, LocateWay way);
 
-    /// Measures again what lies in triangles that an insertion has made, or at first in all: the rectangle around them, or
-    /// with `spans` the triangles themselves. The values are the same: exactly so for heights in whole metres, else to the
-    /// last bit or so on sides, where two triangles hold a sample.
+    /// Measures again what lies in triangles that an insertion has made, or at first in all: the rectangle around them,
+    /// or with `spans` the triangles themselves. The values are the same: exactly so for heights in whole metres, else
+    /// to the last bit or so on sides, where two triangles hold a sample.
     void update(const Delaunay& mesh, std::span<const Delaunay::Index> changed);
 
     struct Largest {

@@ -1,9 +1,10 @@
 #pragma once
-// Greedy insertion in strict order, under any measure, to a deviation or a budget of triangles, from the four corners of a
-// raster. (Garland and Heckbert, "Fast polygonal approximation of terrains and height fields"; Raudins' iterative TIN.)
+// Greedy insertion in strict order, under any measure, to a deviation or a budget of triangles, from the four corners
+// of a raster. (Garland and Heckbert, "Fast polygonal approximation of terrains and height fields"; Raudins' iterative
+// TIN.)
 //
-// A budget does not end in the last state but in the best on the way, as an insertion can make things worse before they get
-// better. What the budget then has left goes to samples that make nothing worse.
+// A budget does not end in the last state but in the best on the way, as an insertion can make things worse before they
+// get better. What the budget then has left goes to samples that make nothing worse.
 
 #include <functional>
 #include <limits>
@@ -47,12 +48,12 @@ struct GreedyReport {
 };
 
 /// Refines a triangulation of the whole grid that has void_border() as vertices and of which no vertex was removed.
-/// Throws Error(bad_usage) if it has more triangles than the budget before any insertion, or if the tolerance or the budget is
-/// out of range.
+/// Throws Error(bad_usage) if it has more triangles than the budget before any insertion, or if the tolerance or the
+/// budget is out of range.
 GreedyReport insert_greedily(Delaunay& mesh, const HeightGrid& grid, const GreedyOptions& options);
 
-/// A triangulation of a grid to start from: its corners, void_border(), and so many columns and rows that no triangle is too
-/// long to be scanned.
+/// A triangulation of a grid to start from: its corners, void_border(), and so many columns and rows that no triangle
+/// is too long to be scanned.
 Delaunay coarsest_tin(const HeightGrid& grid);
 
 /// The distance of every sample from the triangle that holds it, metres, in rows; NaN where void or in no triangle.

@@ -37,8 +37,8 @@ GreedyOptions greedy_options(const TinOptions& options, TinMeasure* measure) {
     return out;
 }
 
-// Under a budget, pruning at the deviation that was reached makes room, which is filled again, and so on: each round ends in
-// the best state of its own, so none is worse than the one before.
+// Under a budget, pruning at the deviation that was reached makes room, which is filled again, and so on: each round
+// ends in the best state of its own, so none is worse than the one before.
 void improve_within_budget(Delaunay& mesh, const HeightGrid& grid, GreedyOptions options, GreedyReport& report,
                            std::size_t required, TinQuality quality, TinResult& result) {
     options.stages.clear();

@@ -1,8 +1,8 @@
 #pragma once
 // A TIN of a raster in memory, all steps: features, insertion, pruning.
 //
-// A tolerance alone is met in tiles, quickly (tiled_tin.h). Budgets, other measures, features and stages go by one strict
-// greedy insertion over the whole (greedy_tin.h).
+// A tolerance alone is met in tiles, quickly (tiled_tin.h). Budgets, other measures, features and stages go by one
+// strict greedy insertion over the whole (greedy_tin.h).
 
 #include <string>
 #include <utility>

@@ -1,5 +1,6 @@
 #pragma once
-// How much a triangle deviates from the samples in it, and which of them should be inserted: what orders greedy insertion.
+// How much a triangle deviates from the samples in it, and which of them should be inserted: what orders greedy
+// insertion.
 
 #include <memory>
 #include <span>

@@ -1,5 +1,6 @@
 #pragma once
-// What greedy insertion need not have inserted: vertices that can go without any sample getting farther than the tolerance.
+// What greedy insertion need not have inserted: vertices that can go without any sample getting farther than the
+// tolerance.
 
 #include <cstdint>
 #include <vector>

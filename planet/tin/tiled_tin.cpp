@@ -73,7 +73,8 @@ class TileWork {
             for (const glm::ivec2 p : border_vertices(around_, from, to, options_.tolerance)) mesh_.insert(p - low_);
     }
 
-    // Not where the terrain is so even that the grid would be most of the mesh: where most of its cells keep the tolerance.
+    // Not where the terrain is so even that the grid would be most of the mesh: where most of its cells keep the
+    // tolerance.
     bool deserves_start_grid() const {
         int cells = 0, rough = 0;
         for (int y = 0; y + start_spacing < heights_.height(); y += start_spacing)

@@ -1,7 +1,7 @@
 #pragma once
-// A TIN of a raster in tiles: borders first, then each tile by itself, on as many threads as there are. What is on a border
-// follows from the samples on it and beside it alone, so neighbours have the same vertices there, bit for bit, without
-// knowing of each other, and the raster need not fit into memory.
+// A TIN of a raster in tiles: borders first, then each tile by itself, on as many threads as there are. What is on a
+// border follows from the samples on it and beside it alone, so neighbours have the same vertices there, bit for bit,
+// without knowing of each other, and the raster need not fit into memory.
 
 #include <array>
 #include <functional>

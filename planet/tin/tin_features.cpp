@@ -106,8 +106,8 @@ class FeatureInsertion {
     const FeatureReport& report() const { return report_; }
 
   private:
-    // Whether a square that the segment touches has a void corner. A little wide: all squares near a step of one column or
-    // row count.
+    // Whether a square that the segment touches has a void corner. A little wide: all squares near a step of one column
+    // or row count.
     bool meets_void(glm::ivec2 a, glm::ivec2 b) const {
         const glm::ivec2 d = b - a;
         const int steps = std::max(std::abs(d.x), std::abs(d.y));

@@ -19,7 +19,8 @@ struct TinFeatures {
     bool empty() const { return points.empty() && lines.empty(); }
 };
 
-/// Every vertex at the sample nearest to it. Lines are cut at the border of the raster; the outlines of polygons are lines.
+/// Every vertex at the sample nearest to it. Lines are cut at the border of the raster; the outlines of polygons are
+/// lines.
 /// @param features in the coordinates of the raster's grid @param raster whose samples are not looked at
 TinFeatures features_at_samples(const Features& features, const Raster& raster);
 

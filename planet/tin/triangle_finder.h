@@ -10,8 +10,8 @@ namespace planet {
 
 enum class LocateWay {
     naive,  ///< one triangle after the other
-    /// Raudins' spatial index: 16 x 16 cells, each with a list of the triangles whose circumcircle meets it. A triangle lies
-    /// in its circle, so the one that holds a sample is in the list of the sample's cell.
+    /// Raudins' spatial index: 16 x 16 cells, each with a list of the triangles whose circumcircle meets it. A triangle
+    /// lies in its circle, so the one that holds a sample is in the list of the sample's cell.
     cells,
     spans,  ///< no search: the samples of each triangle that has changed, row by row
 };

@@ -1,9 +1,10 @@
 #pragma once
 // The samples of a triangle of any shape, row by row, and the worst of them.
 //
-// A row's samples are a span from the left side to the right. Where the sides are is worked out in double, one product a
-// row, and no sample is tested for being inside: |x| < 2^16 within a triangle, so that a quotient is off by less than 2^-35,
-// while a side that misses a sample misses it by 2^-16 or more. A margin of 2^-20 between the two makes spans exact.
+// A row's samples are a span from the left side to the right. Where the sides are is worked out in double, one product
+// a row, and no sample is tested for being inside: |x| < 2^16 within a triangle, so that a quotient is off by less than
+// 2^-35, while a side that misses a sample misses it by 2^-16 or more. A margin of 2^-20 between the two makes spans
+// exact.
 //
 //             c
 //            /|            a lowest, c highest (then leftmost); b between, right or left of a-c
@@ -133,8 +134,8 @@ inline constexpr Values<Real> ramp{0, 1, 2, 3, 4, 5, 6, 7};
 template <class Real>
 inline constexpr Places<Real> count_up{0, 1, 2, 3, 4, 5, 6, 7};
 
-/// Distances of eight samples from the plane, on from sample (x, y), times the area. Exact for heights in whole metres where
-/// the products are below 2^24 (float: such are the triangles that end up in a mesh) or 2^53 (double).
+/// Distances of eight samples from the plane, on from sample (x, y), times the area. Exact for heights in whole metres
+/// where the products are below 2^24 (float: such are the triangles that end up in a mesh) or 2^53 (double).
 template <class Real>
 class ScaledDistances {
   public:

@@ -1,7 +1,8 @@
 #pragma once
 // Where valid samples end. A unit square with both valid and void corners gets all four as vertices: no circle through
-// them holds another sample, so its two triangles are in every Delaunay triangulation of vertices that include them. All
-// other triangles then have valid samples only, or void ones only, and the border of a hole follows the valid samples.
+// them holds another sample, so its two triangles are in every Delaunay triangulation of vertices that include them.
+// All other triangles then have valid samples only, or void ones only, and the border of a hole follows the valid
+// samples.
 
 #include <vector>
 

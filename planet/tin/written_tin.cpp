@@ -58,8 +58,8 @@ class FirstHolder {
     std::vector<std::uint64_t> marked_;
 };
 
-// Where none is: the one that holds what lies a little to the right of the sample and much less above it, or to the left in
-// the last column, below in the last row. So triangles can be counted apart.
+// Where none is: the one that holds what lies a little to the right of the sample and much less above it, or to the
+// left in the last column, below in the last row. So triangles can be counted apart.
 class HolderBeside {
   public:
     explicit HolderBeside(const HeightGrid& grid) : last_(grid.width() - 1, grid.height() - 1) {}

@@ -18,8 +18,9 @@ namespace planet {
 SurfaceMesh surface_from_tin(const TinMesh& mesh, const HeightGrid& grid, const RasterFrame& frame);
 
 /// Heights to make a TIN from for a frame that curves (enu, ecef): above the plane that touches the ellipsoid at the
-/// raster's middle. Between these and the plane of a triangle lies, to within the tilt of the verticals, what lies between
-/// the samples and the triangle as written. @param frame an enu one @return metres, NaN where the frame does not reach
+/// raster's middle. Between these and the plane of a triangle lies, to within the tilt of the verticals, what lies
+/// between the samples and the triangle as written. @param frame an enu one @return metres, NaN where the frame does
+/// not reach
 HeightGrid heights_above_tangent_plane(const HeightGrid& grid, const RasterFrame& frame);
 
 struct WrittenDeviation {
@@ -31,15 +32,15 @@ struct WrittenDeviation {
     std::vector<glm::ivec2> farthest;  ///< the sample of each that has it; -1 if none deviates
 };
 
-/// The distance along the vertical of every sample of every triangle, sides included, from the plane through the vertices
-/// as written. For the rms each sample counts once, in the first triangle that holds it.
+/// The distance along the vertical of every sample of every triangle, sides included, from the plane through the
+/// vertices as written. For the rms each sample counts once, in the first triangle that holds it.
 /// @param written by vertex, in the frame, rounded as its format rounds
 /// @param threads 0: one a processor. The same bits whatever the number.
 WrittenDeviation measure_written(const TinMesh& mesh, std::span<const glm::dvec3> written, const HeightGrid& grid,
                                  const RasterFrame& frame, unsigned threads = 0);
 
-/// The TIN with more samples in it: what measure_written() finds too far, as one with curved sides or rounded vertices may be.
-/// Triangles elsewhere may change too, where the mesh was not one Delaunay triangulation: measure again.
+/// The TIN with more samples in it: what measure_written() finds too far, as one with curved sides or rounded vertices
+/// may be. Triangles elsewhere may change too, where the mesh was not one Delaunay triangulation: measure again.
 /// @param features that it was made with
 TinMesh with_samples(const TinMesh& mesh, const HeightGrid& grid, std::span<const glm::ivec2> samples,
                      const TinFeatures& features);

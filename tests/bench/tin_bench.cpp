@@ -1,5 +1,5 @@
-// TINs of rasters, against plain strict greedy insertion (every new triangle scanned at once, one heap) in the same run.
-// Times are of the processor, summed over the threads, unless they are called real.
+// TINs of rasters, against plain strict greedy insertion (every new triangle scanned at once, one heap) in the same
+// run. Times are of the processor, summed over the threads, unless they are called real.
 
 #include <benchmark/benchmark.h>
 
