@@ -17,7 +17,12 @@ using Index = Delaunay::Index;
 class GreedyInsertion {
   public:
     GreedyInsertion(Delaunay& mesh, const HeightGrid& grid, const GreedyOptions& options)
-        : mesh_(mesh), start_(mesh), grid_(grid), options_(options), local_(make_measure(TinMetric::local, grid)) {
+        : mesh_(mesh),
+          start_(mesh),
+          grid_(grid),
+          options_(options),
+          stages_(options.stages),
+          local_(make_measure(TinMetric::local, grid)) {
         measure_ = options.measure ? options.measure : local_.get();
     }
 
@@ -103,12 +108,15 @@ class GreedyInsertion {
         mesh_.plan_insertion(sample, mesh_.locate_in(sample, t));
         const std::size_t after = triangles_after_plan();
         if (after > options_.max_triangles) return false;
-        const auto stage = std::find_if(options_.stages.begin(), options_.stages.end(),
-                                        [&](std::size_t s) { return s >= after && s < after + 2; });
-        if (stage != options_.stages.end() && options_.at_stage)
-            insert_with_picture(*stage, sample);
-        else
+        const auto stage =
+            std::find_if(stages_.begin(), stages_.end(), [&](std::size_t s) { return s >= after && s < after + 2; });
+        if (stage != stages_.end() && options_.at_stage) {
+            const std::size_t asked = *stage;
+            stages_.erase(stage);
+            insert_with_picture(asked, sample);
+        } else {
             insert_planned();
+        }
         ++report_.insertions;
         return true;
     }
@@ -189,6 +197,7 @@ class GreedyInsertion {
     const Delaunay start_;
     const HeightGrid& grid_;
     const GreedyOptions& options_;
+    std::vector<std::size_t> stages_;  ///< still to come
     std::unique_ptr<TinMeasure> local_;
     TinMeasure* measure_;
     GreedyReport report_;
