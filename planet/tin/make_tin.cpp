@@ -1,0 +1,108 @@
+#include "planet/tin/make_tin.h"
+
+#include <chrono>
+
+#include "planet/error.h"
+#include "planet/tin/prune.h"
+#include "planet/tin/triangle_scan.h"
+#include "planet/tin/void_border.h"
+
+namespace planet {
+
+namespace {
+
+using Index = Delaunay::Index;
+
+class Steps {
+  public:
+    explicit Steps(TinResult& result) : result_(result) {}
+    void done(const char* step) {
+        const auto now = std::chrono::steady_clock::now();
+        result_.seconds.emplace_back(step, std::chrono::duration<double>(now - last_).count());
+        last_ = now;
+    }
+
+  private:
+    TinResult& result_;
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+GreedyOptions greedy_options(const TinOptions& options, TinMeasure* measure) {
+    GreedyOptions out;
+    out.tolerance = options.tolerance;
+    out.max_triangles = options.max_triangles;
+    out.measure = measure;
+    out.stages = options.stages;
+    out.at_stage = options.at_stage;
+    return out;
+}
+
+// Under a budget, pruning at the deviation that was reached makes room, which is filled again, and so on: each round
+// ends in the best state of its own, so none is worse than the one before.
+void improve_within_budget(Delaunay& mesh, const HeightGrid& grid, GreedyOptions options, GreedyReport& report,
+                           std::size_t required, TinQuality quality, TinResult& result) {
+    options.stages.clear();
+    const int rounds = quality == TinQuality::best ? 12 : 2;
+    for (int round = 0; round < rounds && report.end == GreedyEnd::budget; ++round) {
+        Delaunay pruned = mesh;
+        const std::size_t removed =
+            prune(pruned, grid, {report.deviation_max, 1, std::vector<std::uint8_t>(required, 1)});
+        if (removed == 0) break;
+        Delaunay next = pruned.compacted();
+        const GreedyReport now = insert_greedily(next, grid, options);
+        if (!(now.deviation_max < report.deviation_max)) break;
+        const bool worth_more = now.deviation_max < 0.995 * report.deviation_max;
+        result.pruned += removed;
+        result.insertions += now.insertions - now.taken_back + now.filled_up;
+        mesh = std::move(next);
+        report = now;
+        if (!worth_more) break;
+    }
+}
+
+void make_as_one(const HeightGrid& grid, const TinOptions& options, TinResult& result) {
+    Steps steps(result);
+    Delaunay mesh = coarsest_tin(grid);
+    result.features = insert_features(mesh, grid, options.features);
+    const std::size_t required = mesh.vertex_slots();
+    steps.done("features");
+    std::unique_ptr<TinMeasure> own;
+    if (!options.measure && options.metric != TinMetric::local) own = make_measure(options.metric, grid);
+    const GreedyOptions greedy = greedy_options(options, options.measure ? options.measure : own.get());
+    GreedyReport report = insert_greedily(mesh, grid, greedy);
+    result.insertions = report.insertions - report.taken_back + report.filled_up;
+    steps.done("insertion");
+    if (options.quality != TinQuality::fast) {
+        const bool by_deviation = !greedy.measure || !greedy.measure->adds_up();
+        if (report.end == GreedyEnd::tolerance) {
+            const int passes = options.quality == TinQuality::best ? 8 : 1;
+            result.pruned = prune(mesh, grid, {options.tolerance, passes, std::vector<std::uint8_t>(required, 1)});
+        } else if (by_deviation) {
+            improve_within_budget(mesh, grid, greedy, report, required, options.quality, result);
+        }
+        steps.done("pruning");
+    }
+    result.end = report.end;
+    result.mesh = triangles_over_samples(mesh, grid);
+}
+
+}  // namespace
+
+TinResult make_tin(const HeightGrid& grid, const TinOptions& options) {
+    if (!(options.tolerance >= 0))
+        throw Error(Fault::bad_usage, "the tolerance", std::to_string(options.tolerance) + " m", "0 or more");
+    TinResult result;
+    const bool in_tiles = options.max_triangles == std::numeric_limits<std::size_t>::max() &&
+                          options.features.empty() && options.metric == TinMetric::local && !options.measure &&
+                          options.stages.empty();
+    if (!in_tiles) {
+        make_as_one(grid, options, result);
+        return result;
+    }
+    Steps steps(result);
+    result.mesh = tiled_tin(grid, {options.tolerance, options.quality, options.threads});
+    steps.done("insertion");
+    return result;
+}
+
+}  // namespace planet

@@ -1,0 +1,257 @@
+#include "planet/tin/written_tin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "planet/parallel.h"
+#include "planet/patches/patch_mesh.h"
+#include "planet/tin/greedy_tin.h"
+#include "planet/tin/triangle_scan.h"
+#include "planet/tin/void_border.h"
+
+namespace planet {
+
+namespace {
+
+constexpr std::size_t piece = 4096;
+
+std::vector<glm::dvec3> placed(const TinMesh& mesh, const HeightGrid& grid, const RasterFrame& frame) {
+    std::vector<glm::dvec3> out(mesh.vertices.size());
+    parallel_for((out.size() + piece - 1) / piece, 0, [&](std::size_t k) {
+        const std::size_t begin = k * piece, n = std::min(piece, out.size() - begin);
+        std::vector<glm::dvec2> at(n);
+        std::vector<double> heights(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            at[i] = glm::dvec2(mesh.vertices[begin + i]);
+            heights[i] = static_cast<double>(grid.at(mesh.vertices[begin + i]));
+        }
+        frame.place(at, heights, std::span(out).subspan(begin, n), {});
+    });
+    return out;
+}
+
+double smallest_angle(const std::array<glm::dvec3, 3>& p, glm::dvec2 metres_per_unit) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 scale(metres_per_unit, 1);
+        const glm::dvec3 u = (p[(k + 1) % 3] - p[k]) * scale, v = (p[(k + 2) % 3] - p[k]) * scale;
+        least = std::min(least, std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)));
+    }
+    return least;
+}
+
+// Which of the triangles that hold a sample counts it. Where triangles are missing: the first to ask.
+class FirstHolder {
+  public:
+    explicit FirstHolder(const HeightGrid& grid)
+        : width_(static_cast<std::size_t>(grid.width())), marked_((grid.count() + 63) / 64) {}
+    bool counts(const std::array<glm::ivec2, 3>&, glm::ivec2 p) {
+        const std::size_t i = static_cast<std::size_t>(p.y) * width_ + static_cast<std::size_t>(p.x);
+        const std::uint64_t bit = std::uint64_t{1} << (i & 63), before = marked_[i >> 6];
+        marked_[i >> 6] = before | bit;
+        return (before & bit) == 0;
+    }
+
+  private:
+    std::size_t width_;
+    std::vector<std::uint64_t> marked_;
+};
+
+// Where none is: the one that holds what lies a little to the right of the sample and much less above it, or to the
+// left in the last column, below in the last row. So triangles can be counted apart.
+class HolderBeside {
+  public:
+    explicit HolderBeside(const HeightGrid& grid) : last_(grid.width() - 1, grid.height() - 1) {}
+    bool counts(const std::array<glm::ivec2, 3>& c, glm::ivec2 p) const {
+        const int right = p.x == last_.x ? -1 : 1, up = p.y == last_.y ? -1 : 1;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::ivec2 side = c[(k + 1) % 3] - c[k];
+            const std::int64_t left = orientation(c[k], c[(k + 1) % 3], p);
+            if ((left != 0 ? left : side.y != 0 ? -std::int64_t{side.y} * right : std::int64_t{side.x} * up) < 0)
+                return false;
+        }
+        return true;
+    }
+
+  private:
+    glm::ivec2 last_;
+};
+
+// Samples of one triangle, and their distances.
+class TriangleSamples {
+  public:
+    TriangleSamples(const HeightGrid& grid, const RasterFrame& frame) : grid_(grid), frame_(frame) {}
+
+    void collect(const std::array<glm::ivec2, 3>& c) {
+        samples_.clear();
+        const auto add = [this](glm::ivec2 p) {
+            if (grid_.valid(p)) samples_.push_back(p);
+        };
+        for_each_span(SortedTriangle(c, {0, 0, 0}), [&](int y, int first, int last) {
+            for (int x = first; x <= last; ++x)
+                if (glm::ivec2(x, y) != c[0] && glm::ivec2(x, y) != c[1] && glm::ivec2(x, y) != c[2]) add({x, y});
+            return true;
+        });
+        for (const glm::ivec2 corner : c) add(corner);
+    }
+
+    void measure(const std::array<glm::dvec3, 3>& p, glm::ivec2 corner) {
+        distances_.resize(samples_.size());
+        const glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
+        if (frame_.affine())
+            measure_affine(p[0], n, corner);
+        else
+            measure_placed(p, n);
+    }
+
+    std::span<const glm::ivec2> samples() const { return samples_; }
+    std::span<const double> distances() const { return distances_; }
+
+  private:
+    // The plane as a function of column and row.
+    void measure_affine(const glm::dvec3& p, const glm::dvec3& n, glm::ivec2 corner) {
+        const SampleGrid& g = frame_.grid();
+        const glm::dvec2 slope(-n.x / n.z, -n.y / n.z);
+        const double per_column = glm::dot(slope, g.per_column), per_row = glm::dot(slope, g.per_row);
+        const double height = p.z + glm::dot(slope, g.crs_from_sample(corner) - glm::dvec2(p));
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            const glm::ivec2 d = samples_[i] - corner;
+            distances_[i] =
+                std::abs(height + per_column * d.x + per_row * d.y - static_cast<double>(grid_.at(samples_[i])));
+        }
+    }
+
+    // Along the vertical of each sample; from the nearest corner where the triangle stands upright or has no area.
+    void measure_placed(const std::array<glm::dvec3, 3>& p, const glm::dvec3& n) {
+        const std::size_t count = samples_.size();
+        at_.assign(samples_.begin(), samples_.end());
+        heights_.resize(count);
+        position_.resize(count);
+        up_.resize(count);
+        for (std::size_t i = 0; i < count; ++i) heights_[i] = static_cast<double>(grid_.at(samples_[i]));
+        frame_.place(at_, heights_, position_, up_);
+        const double least_across = 1e-9 * glm::length(n);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double across = glm::dot(glm::dvec3(up_[i]), n);
+            distances_[i] = std::abs(across) > least_across
+                                ? std::abs(glm::dot(p[0] - position_[i], n) / across)
+                                : std::min({glm::distance(position_[i], p[0]), glm::distance(position_[i], p[1]),
+                                            glm::distance(position_[i], p[2])});
+        }
+    }
+
+    const HeightGrid& grid_;
+    const RasterFrame& frame_;
+    std::vector<glm::ivec2> samples_;
+    std::vector<double> distances_, heights_;
+    std::vector<glm::dvec2> at_;
+    std::vector<glm::dvec3> position_;
+    std::vector<glm::vec3> up_;
+};
+
+struct Sum {
+    double max = 0, squares = 0, angle = std::numeric_limits<double>::infinity();
+    std::size_t samples = 0;
+};
+
+template <class Holder>
+Sum measure_piece(const TinMesh& mesh, std::span<const glm::dvec3> written, const HeightGrid& grid,
+                  const RasterFrame& frame, Holder& holder, std::size_t begin, std::size_t end, WrittenDeviation& out) {
+    Sum sum;
+    TriangleSamples inside(grid, frame);
+    const glm::dvec2 metres = frame.metres_per_unit();
+    for (std::size_t i = begin; i < end; ++i) {
+        const auto& t = mesh.triangles[i];
+        const std::array p{written[t[0]], written[t[1]], written[t[2]]};
+        const std::array c{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+        sum.angle = std::min(sum.angle, smallest_angle(p, metres));
+        inside.collect(c);
+        inside.measure(p, c[0]);
+        for (std::size_t k = 0; k < inside.samples().size(); ++k) {
+            const double d = inside.distances()[k];
+            if (d > out.by_triangle[i]) {
+                out.by_triangle[i] = d;
+                out.farthest[i] = inside.samples()[k];
+            }
+            if (!holder.counts(c, inside.samples()[k])) continue;
+            sum.squares += d * d;
+            ++sum.samples;
+        }
+        sum.max = std::max(sum.max, out.by_triangle[i]);
+    }
+    return sum;
+}
+
+}  // namespace
+
+SurfaceMesh surface_from_tin(const TinMesh& mesh, const HeightGrid& grid, const RasterFrame& frame) {
+    SurfaceMesh out;
+    out.vertices = placed(mesh, grid, frame);
+    out.triangles = mesh.triangles;
+    if (frame.mirrored())
+        for (auto& t : out.triangles) std::swap(t[1], t[2]);
+    out.level.assign(out.triangles.size(), 0);
+    append_strips(out.triangles, out.strip);
+    return out;
+}
+
+HeightGrid heights_above_tangent_plane(const HeightGrid& grid, const RasterFrame& frame) {
+    HeightGrid out(grid.width(), grid.height());
+    const auto width = static_cast<std::size_t>(grid.width());
+    for (int y = 0; y < grid.height(); ++y) {
+        std::vector<glm::dvec2> at(width);
+        std::vector<double> heights(width);
+        std::vector<glm::dvec3> position(width);
+        for (std::size_t x = 0; x < width; ++x) {
+            at[x] = glm::dvec2(static_cast<double>(x), y);
+            heights[x] = static_cast<double>(grid.row(y)[x]);
+        }
+        frame.place(at, heights, position, {});
+        for (std::size_t x = 0; x < width; ++x) out.set({static_cast<int>(x), y}, static_cast<float>(position[x].z));
+    }
+    return HeightGrid(out, {0, 0}, {grid.width() - 1, grid.height() - 1});
+}
+
+WrittenDeviation measure_written(const TinMesh& mesh, std::span<const glm::dvec3> written, const HeightGrid& grid,
+                                 const RasterFrame& frame, unsigned threads) {
+    WrittenDeviation out;
+    const std::size_t triangles = mesh.triangles.size(), pieces = (triangles + piece - 1) / piece;
+    out.by_triangle.assign(triangles, 0);
+    out.farthest.assign(triangles, glm::ivec2(-1));
+    std::vector<Sum> sums(pieces);
+    const auto work = [&](auto& holder, std::size_t k) {
+        sums[k] =
+            measure_piece(mesh, written, grid, frame, holder, k * piece, std::min(triangles, (k + 1) * piece), out);
+    };
+    if (grid.has_void()) {
+        FirstHolder holder(grid);
+        for (std::size_t k = 0; k < pieces; ++k) work(holder, k);
+    } else {
+        const HolderBeside holder(grid);
+        parallel_for(pieces, threads, [&](std::size_t k) { work(holder, k); });
+    }
+    double squares = 0;
+    out.angle_min = triangles == 0 ? 0 : std::numeric_limits<double>::infinity();
+    for (const Sum& sum : sums) {
+        out.max = std::max(out.max, sum.max);
+        out.angle_min = std::min(out.angle_min, sum.angle);
+        out.samples += sum.samples;
+        squares += sum.squares;
+    }
+    out.uncovered = grid.valid_samples() - out.samples;
+    out.rms = out.samples == 0 ? 0 : std::sqrt(squares / static_cast<double>(out.samples));
+    return out;
+}
+
+TinMesh with_samples(const TinMesh& mesh, const HeightGrid& grid, std::span<const glm::ivec2> samples,
+                     const TinFeatures& features) {
+    Delaunay all = coarsest_tin(grid);
+    insert_features(all, grid, features);
+    all.reserve(mesh.triangles.size());
+    for (const glm::ivec2 p : mesh.vertices) all.insert(p);
+    for (const glm::ivec2 p : samples) all.insert(p);
+    return triangles_over_samples(all, grid);
+}
+
+}  // namespace planet

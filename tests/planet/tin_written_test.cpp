@@ -1,0 +1,143 @@
+// TINs as they are written: places, winding, deviations in every frame.
+
+#include "planet/tin/written_tin.h"
+
+#include <gtest/gtest.h>
+
+#include "planet/elevation/raster_io.h"
+#include "planet/mesh/surface_check.h"
+#include "planet/tin/make_tin.h"
+#include "tin_rasters.h"
+
+namespace planet {
+namespace {
+
+// 3 arc-seconds, rows southwards, at 37 degrees north.
+std::shared_ptr<const Raster> geographic_raster(int width, int height) {
+    auto raster = std::make_shared<Raster>();
+    raster->name = "dem.tif";
+    raster->width = width;
+    raster->height = height;
+    raster->crs = "EPSG:4326";
+    raster->grid = {{-106, 37.5}, {1.0 / 1200, 0}, {0, -1.0 / 1200}};
+    const HeightGrid heights = rough_grid(width, height);
+    std::vector<float> samples;
+    for (int y = 0; y < height; ++y) samples.insert(samples.end(), heights.row(y), heights.row(y) + width);
+    raster->samples = samples;
+    return raster;
+}
+
+RasterFrame frame_of(std::shared_ptr<const Raster> raster, MeshFrame frame) {
+    return {std::move(raster), frame, VerticalDatum::ellipsoid, nullptr};
+}
+
+TEST(TinWritten, IsASurfaceInEveryFrame) {
+    const auto raster = geographic_raster(120, 90);
+    const HeightGrid grid(*raster);
+    const TinMesh mesh = make_tin(grid, {.tolerance = 20}).mesh;
+    for (const MeshFrame kind : {MeshFrame::source, MeshFrame::utm, MeshFrame::enu, MeshFrame::ecef}) {
+        const RasterFrame frame = frame_of(raster, kind);
+        const SurfaceMesh surface = surface_from_tin(mesh, grid, frame);
+        const SurfaceCheck c = check(surface, kind);
+        EXPECT_TRUE(c.ok()) << c.summary();
+        EXPECT_EQ(c.euler(), 1);
+    }
+}
+
+TEST(TinWritten, DeviationsAreThoseOfTheLatticeInTheSource) {
+    const auto raster = geographic_raster(120, 90);
+    const HeightGrid grid(*raster);
+    const RasterFrame frame = frame_of(raster, MeshFrame::source);
+    for (const double tolerance : {0.0, 5.0, 40.0, 1e5}) {
+        const TinMesh mesh = make_tin(grid, {.tolerance = tolerance}).mesh;
+        const SurfaceMesh surface = surface_from_tin(mesh, grid, frame);
+        const WrittenDeviation d = measure_written(mesh, surface.vertices, grid, frame);
+        EXPECT_NEAR(d.max, brute_deviation(mesh, grid).max, 1e-6);
+        EXPECT_EQ(d.samples, grid.count()) << "each counts once";
+        EXPECT_EQ(d.uncovered, 0u);
+        EXPECT_EQ(*std::max_element(d.by_triangle.begin(), d.by_triangle.end()), d.max);
+        EXPECT_GT(d.angle_min, 0);
+        EXPECT_LT(d.angle_min, 61 * degrees);
+        EXPECT_EQ(measure_written(mesh, surface.vertices, grid, frame, 1).rms, d.rms) << "whatever the threads";
+        double squares = 0;
+        for (int y = 0; y < 90; ++y)
+            for (int x = 0; x < 120; ++x) {  // by the first triangle that holds it
+                for (const auto& t : mesh.triangles) {
+                    const glm::ivec2 a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]], p(x, y);
+                    const auto u = static_cast<double>(orientation(b, c, p)),
+                               v = static_cast<double>(orientation(c, a, p)),
+                               w = static_cast<double>(orientation(a, b, p));
+                    if (u < 0 || v < 0 || w < 0) continue;
+                    const auto h = [&](glm::ivec2 q) { return static_cast<double>(grid.at(q)); };
+                    const double off = (u * h(a) + v * h(b) + w * h(c)) / (u + v + w) - h(p);
+                    squares += off * off;
+                    break;
+                }
+            }
+        EXPECT_NEAR(d.rms, std::sqrt(squares / static_cast<double>(grid.count())), 1e-6);
+    }
+}
+
+TEST(TinWritten, CountsWhatVoidsLeave) {
+    const auto raster = geographic_raster(60, 50);
+    HeightGrid grid(*raster);
+    for (int y = 10; y < 30; ++y)
+        for (int x = 20; x < 33 + y % 4; ++x) grid.set({x, y}, std::nanf(""));
+    const TinMesh mesh = make_tin(grid, {.tolerance = 10}).mesh;
+    const RasterFrame frame = frame_of(raster, MeshFrame::source);
+    const WrittenDeviation d = measure_written(mesh, surface_from_tin(mesh, grid, frame).vertices, grid, frame);
+    EXPECT_EQ(d.samples + d.uncovered, grid.valid_samples());
+    EXPECT_EQ(d.uncovered, brute_deviation(mesh, grid).uncovered);
+    EXPECT_LE(d.max, 10 + 1e-9);
+}
+
+TEST(TinWritten, NoticesWhatRoundingDoes) {
+    const auto raster = geographic_raster(60, 50);
+    const HeightGrid grid(*raster);
+    const RasterFrame frame = frame_of(raster, MeshFrame::source);
+    const TinMesh mesh = make_tin(grid, {.tolerance = 10}).mesh;
+    SurfaceMesh surface = surface_from_tin(mesh, grid, frame);
+    surface.vertices[surface.vertices.size() / 2].z += 25;
+    const WrittenDeviation d = measure_written(mesh, surface.vertices, grid, frame);
+    EXPECT_GE(d.max, 25 - 1e-9) << "at the vertex itself, at least";
+    EXPECT_LE(d.max, 35 + 1e-9);
+}
+
+// A sea of 200 x 200 km: flat in its CRS, 3 m or more above its chord.
+TEST(TinWritten, CurvedFramesAreMetByHeightsAboveThePlane) {
+    auto flat = std::make_shared<Raster>();
+    flat->name = "sea.tif";
+    flat->width = flat->height = 160;
+    flat->crs = "EPSG:4326";
+    flat->grid = {{5, 1}, {1.0 / 80, 0}, {0, -1.0 / 80}};
+    flat->samples = std::vector<float>(160 * 160, 0.0f);
+    const HeightGrid grid(*flat);
+    const RasterFrame enu = frame_of(flat, MeshFrame::enu), ecef = frame_of(flat, MeshFrame::ecef);
+    const TinMesh flat_mesh = make_tin(grid, {.tolerance = 3}).mesh;
+    EXPECT_GT(measure_written(flat_mesh, surface_from_tin(flat_mesh, grid, ecef).vertices, grid, ecef).max, 100);
+    const TinMesh mesh = make_tin(heights_above_tangent_plane(grid, enu), {.tolerance = 3}).mesh;
+    for (const RasterFrame* frame : {&enu, &ecef}) {
+        const SurfaceMesh surface = surface_from_tin(mesh, grid, *frame);
+        const WrittenDeviation d = measure_written(mesh, surface.vertices, grid, *frame);
+        EXPECT_LE(d.max, 3.1);
+        EXPECT_EQ(d.samples, grid.count());
+        EXPECT_TRUE(check(surface, frame->reference().frame).ok());
+    }
+}
+
+TEST(TinWritten, MoreSamplesGoIn) {
+    const auto raster = geographic_raster(80, 80);
+    const HeightGrid grid(*raster);
+    const TinFeatures features{{{40, 41}}, {{{3, 3}, {70, 50}}}};
+    const TinMesh mesh = make_tin(grid, {.tolerance = 30, .features = features}).mesh;
+    const std::vector<glm::ivec2> more{{7, 9}, {33, 60}, {0, 44}};
+    const TinMesh refined = with_samples(mesh, grid, more, features);
+    EXPECT_TRUE(sound(refined));
+    EXPECT_EQ(doubled_area(refined), 2 * 79 * 79);
+    EXPECT_GE(refined.vertices.size(), mesh.vertices.size());
+    for (const glm::ivec2 p : more)
+        EXPECT_NE(std::find(refined.vertices.begin(), refined.vertices.end(), p), refined.vertices.end());
+}
+
+}  // namespace
+}  // namespace planet
