@@ -32,7 +32,7 @@ BlockedRaster::BlockedRaster(std::shared_ptr<const RasterMosaic> mosaic, std::sh
         survey_all(advance);
     }
     if (survey_.empty())
-        throw Error(Fault::bad_data, header_.name, "holds no heights: every sample is nodata", "heights");
+        throw Error(Fault::bad_data, header_.name, "holds no heights: every sample is nodata", "one band of heights");
     header_.checksum = digest.finish();
     if (header_.checksum.empty()) header_.checksum = checksum_of_samples();
 }

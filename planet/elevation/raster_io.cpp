@@ -103,7 +103,7 @@ Raster read_raster(const std::string& path, const RasterOptions& options) {
                         "at most " + std::to_string(options.max_samples) + " samples; cut or reduce it");
         if (!reader->may_be_shorts() || !read_all<std::int16_t>(*reader, raster)) read_all<float>(*reader, raster);
         if (!holds_a_height(raster))
-            throw Error(Fault::bad_data, path, "holds no heights: every sample is nodata", "heights");
+            throw Error(Fault::bad_data, path, "holds no heights: every sample is nodata", "one band of heights");
         raster.name = std::filesystem::path(path).filename().string();
         raster.checksum = checksum_of(raster, reader->files());
         return raster;

@@ -256,7 +256,7 @@ Raster read_mosaic(const RasterMosaic& mosaic) {
         raster.samples = std::move(floats);
     }
     if (!holds_a_height(raster))
-        throw Error(Fault::bad_data, raster.name, "holds no heights: every sample is nodata", "heights");
+        throw Error(Fault::bad_data, raster.name, "holds no heights: every sample is nodata", "one band of heights");
     raster.checksum = checksum_of(raster, std::move(files));
     return raster;
 }

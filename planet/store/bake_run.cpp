@@ -102,7 +102,12 @@ void refuse_memory(const BakeOptions& options) {
 }
 
 BakeRun::BakeRun(const BakeScene& scene, TilePlan& plan, BakeFile& file)
-    : scene_(scene), plan_(plan), file_(file), threads_(threads_of(scene.options)), frontier_(plan) {}
+    : scene_(scene),
+      plan_(plan),
+      file_(file),
+      threads_(threads_of(scene.options)),
+      least_bytes_(least_bytes(scene.options, plan)),
+      frontier_(plan) {}
 
 void BakeRun::run() {
     mark_written();
@@ -329,8 +334,7 @@ void BakeRun::write(Lock& lock) {
 // Records of tiles in the frontier are kept in what is left of the memory.
 void BakeRun::keep_within_memory() {
     const std::size_t limit = usable_bytes(scene_.options);
-    const std::size_t needed =
-        least_bytes(scene_.options, plan_) + inner_bytes_ + to_write_bytes_ + frontier_.size() * frontier_tile_bytes;
+    const std::size_t needed = least_bytes_ + inner_bytes_ + to_write_bytes_ + frontier_.size() * frontier_tile_bytes;
     if (needed > limit) refuse_memory(scene_.options);
     frontier_.keep_at_most((limit - needed) / sizeof(TileRecords));
     most_bytes_ = std::max(most_bytes_, needed + frontier_.kept() * sizeof(TileRecords));

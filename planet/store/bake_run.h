@@ -70,7 +70,7 @@ class BakeRun {
     const BakeScene& scene_;
     TilePlan& plan_;
     BakeFile& file_;
-    std::size_t threads_;
+    std::size_t threads_, least_bytes_;  // least_bytes_: asking for the number of processors reads a file
 
     std::mutex mutex_;
     std::condition_variable changed_;

@@ -29,7 +29,16 @@ void fill(Report& report, const RenderOptions& options, const PictureReport& pic
     report.set("triangles", picture.triangles);
     report.set("vertices", picture.vertices);
     report.set("strip_indices", picture.strip_indices);
-    report.set("tiles", picture.tiles);
+    report.set("tiles", picture.tiles.tiles);
+    report.set("tile_bytes", picture.tiles.tile_bytes);
+    report.set("tiles_loaded", picture.tiles.tiles_loaded);
+    report.set("memory_limit_bytes", picture.tiles.memory_limit_bytes);
+    report.set("memory_peak_bytes", picture.tiles.memory_peak_bytes);
+    report.set("gpu_bytes", picture.sent_bytes);
+    report.set("gpu_bytes_at_rest", picture.at_rest.sent_bytes);
+    report.set("gpu_bytes_moving", picture.moving.sent_bytes);
+    report.set("update_seconds_at_rest", picture.at_rest.seconds);
+    report.set("update_seconds_moving", picture.moving.seconds);
     report.set("deviation_max_m", picture.deviation_max_m);
     report.set("pixel_deviation_max", picture.pixel_deviation_max);
     report.set("pixel_deviation_bound", options.max_pixel_deviation);
@@ -60,6 +69,7 @@ void add_render(CLI::App& program) {
         if (render.height && command->count("--pitch") == 0) render.pitch = 0;
         Progress progress;
         render.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };
+        render.measure_frames = !options->json.empty();
         Report report("render", options->json);
         // Refuses an output that cannot be written before the work, not after it.
         { const OutputFile writable("--output", render.output); }

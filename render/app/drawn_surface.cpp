@@ -25,8 +25,11 @@ constexpr double deepest_geoid_m = 120;
 
 }  // namespace
 
-DrawnSurface::DrawnSurface(std::shared_ptr<const planet::ElevationStore> s, double factor)
-    : store(s), exaggeration(factor), field(s), tiles(field.cache(), {store->metadata().ellipsoid, factor}) {}
+DrawnSurface::DrawnSurface(std::shared_ptr<const planet::ElevationStore> s, const RenderOptions& options)
+    : store(s),
+      exaggeration(options.exaggeration),
+      field(s, options.memory_bytes),
+      tiles(field.cache(), {store->metadata().ellipsoid, exaggeration}) {}
 
 PatchSurface DrawnSurface::for_patches() const {
     return {.heights = [this](auto normals, auto heights) { field.heights(normals, heights); },

@@ -17,7 +17,7 @@ struct DrawnSurface {
     planet::StoreField field;
     planet::StoreTiles tiles;
 
-    DrawnSurface(std::shared_ptr<const planet::ElevationStore> store, double exaggeration);
+    DrawnSurface(std::shared_ptr<const planet::ElevationStore> store, const RenderOptions& options);
 
     /// What normals per pixel are made from. Refers to this.
     PatchSurface for_patches() const;

@@ -1,25 +1,25 @@
 #include "render/app/picture.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <cmath>
 #include <future>
-#include <set>
 
 #include "planet/geodesy/earth_rotation.h"
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/sun.h"
-#include "planet/mesh/segments.h"
 #include "render/app/band_writer.h"
 #include "render/app/data_path.h"
 #include "render/app/drawn_surface.h"
 #include "render/app/earth_store.h"
 #include "render/app/imagery.h"
+#include "render/app/part_mesh.h"
 #include "render/app/steps.h"
 #include "render/gl/framebuffer.h"
 #include "render/passes/overlay.h"
 #include "render/passes/sky.h"
 #include "render/passes/terrain.h"
-#include "render/picture/relief_patches.h"
 
 namespace render {
 
@@ -29,18 +29,14 @@ using planet::wgs84;
 
 constexpr int part_side = 2048;
 
-/// The most lattice steps of a patch are this many pixels: one normal a pixel or more, as far as there is data.
-constexpr double patch_pixels = 96;
-/// A patch of this many bisection levels above the finest has two texels between the vertices of the surface.
-constexpr int finest_patch_above = 10;
 constexpr double highest_ground_m = 9000;
-constexpr std::size_t patch_limit = 1800;
 
-/// What a part is drawn from.
-struct PartMesh {
-    planet::Segments segments;
-    ReliefPatches patches;
-};
+/// Processor time of this thread.
+double thread_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 /// All that is the same for every part of the picture. Beside the thread of OpenGL, which opens the context, compiles
 /// shaders and uploads, run: the tables that do not depend on the view from the start; the air of the view and the first
@@ -57,9 +53,9 @@ class Painter {
           context_(steps_.time("context", [&] { return Context::create({.backend = options.backend}); })),
           earth_(options.earth),
           index_(user_checksum_index()),
-          surface_(steps_.time("store", [&] { return open_store(); }), options.exaggeration),
+          surface_(steps_.time("store", [&] { return open_store(); }), options),
           camera_(steps_.time("store", [&] { return surface_.camera(options); })),
-          occluder_radius_(surface_.occluder_radius()) {
+          mesher_(options, surface_, camera_, steps) {
         for (int y = 0; y < camera_.height; y += part_side)
             for (int x = 0; x < camera_.width; x += part_side)
                 parts_.push_back(
@@ -80,6 +76,7 @@ class Painter {
         }
         index_.save();
         fill_report();
+        if (options_.measure_frames) measure_frames();
     }
 
   private:
@@ -129,48 +126,25 @@ class Painter {
 
     /// Starts making the mesh of a part. Two are in use at a time: that one, and the one that is drawn.
     void begin_mesh(std::size_t i) {
-        if (i < parts_.size()) mesh_ = beside(threads_, [this, i] { build_mesh(parts_[i], meshes_[i & 1]); });
-    }
-
-    void build_mesh(const PicturePart& part, PartMesh& mesh) {
-        planet::SegmentView view;
-        view.test = {camera_.eye,
-                     planet::split_reach(camera_.focal_px, camera_.tan_corner(), options_.max_pixel_deviation)};
-        view.culling = camera_.culling(part, occluder_radius_);
-        view.radius_m = wgs84.mean_radius();
-        view.finest_patch_level = std::max(surface_.store->metadata().finest_level - finest_patch_above, 0);
-        view.segment_angle = patch_pixels / camera_.focal_px;
-        const auto detailed = [&] {
-            std::set<planet::LocationCode> patches;
-            for (const planet::Segment& s : mesh.segments.segments())
-                if (s.detailed) patches.insert(s.patch);
-            return patches.size();
-        };
-        do {
-            steps_.time("mesh", [&] { mesh.segments.build(surface_.tiles, view, static_cast<int>(threads_)); });
-            view.segment_angle *= 1.5;
-        } while (detailed() > patch_limit && view.segment_angle < 10);
-        steps_.time("normals", [&] {
-            mesh.patches.build(mesh.segments, surface_.for_patches(), wgs84.mean_radius(), static_cast<int>(threads_));
-        });
+        if (i < parts_.size()) mesh_ = beside(threads_, [this, i] { mesher_.build(parts_[i], meshes_[i & 1]); });
     }
 
     void upload_mesh(std::size_t i) {
         mesh_.get();
-        const planet::Segments& segments = meshes_[i & 1].segments;
-        const ReliefPatches& patches = meshes_[i & 1].patches;
+        const PartMesh& mesh = meshes_[i & 1];
+        const planet::Segments& segments = mesh.segments;
         begin_mesh(i + 1);
         steps_.time("upload", [&] {
-            terrain_->upload(segments, patches.layers());
+            terrain_->upload(segments, mesh.patches.layers());
             overlay_->upload(segments);
-            patch_texture_ = patches.upload();
+            patch_texture_ = mesh.patches.upload();
         });
         report_.triangles += segments.leaf_count();
         report_.vertices += segments.vertex_count();
         report_.strip_indices += segments.index_count();
-        report_.deviation_max_m = std::max(report_.deviation_max_m, segments.deviation_max_m());
-        report_.pixel_deviation_max =
-            std::max(report_.pixel_deviation_max, segments.ratio_max() * options_.max_pixel_deviation);
+        report_.sent_bytes += terrain_->sent_bytes();
+        report_.deviation_max_m = std::max(report_.deviation_max_m, mesh.deviation_max_m);
+        report_.pixel_deviation_max = std::max(report_.pixel_deviation_max, mesh.pixel_deviation_max);
     }
 
     void paint_part(const PicturePart& part, std::vector<std::uint8_t>& band) {
@@ -205,7 +179,7 @@ class Painter {
     }
 
     void fill_report() {
-        report_.tiles = surface_.tiles.count();
+        report_.tiles = mesher_.counts();
         report_.damage = surface_.field.cache().damage();
         report_.eye_height_m = planet::height_from_ecef(wgs84, camera_.eye).m;
         report_.crs = "EPSG:4978";
@@ -214,6 +188,24 @@ class Painter {
         report_.backend = backend_name(context_.backend());
         report_.gl_version = context_.gl_version();
         report_.gl_renderer = context_.gl_renderer();
+    }
+
+    /// What a frame costs once the last part is drawn: the same view again, and the eye a hundredth of its height ahead.
+    void measure_frames() {
+        PartMesh& mesh = meshes_[(parts_.size() - 1) & 1];
+        const glm::dvec3 forward = -glm::dvec3(glm::transpose(camera_.view_from_ecef)[2]);
+        const glm::dvec3 ahead = camera_.eye + forward * (0.01 * std::abs(report_.eye_height_m));
+        const auto frame = [&](const glm::dvec3& eye) {
+            mesh.view.test.eye = mesh.view.culling.eye = eye;
+            const double start = thread_seconds();
+            mesh.segments.update(mesher_.tiles(), mesh.view);
+            const double seconds = thread_seconds() - start;
+            terrain_->upload(mesh.segments, std::vector<std::int32_t>(mesh.segments.segments().size(), -1));
+            return FrameCost{seconds, terrain_->sent_bytes()};
+        };
+        for (const glm::dvec3& eye : {ahead, camera_.eye}) frame(eye);  // tiles are loaded now
+        report_.at_rest = frame(camera_.eye);
+        report_.moving = frame(ahead);
     }
 
     const RenderOptions& options_;
@@ -227,7 +219,7 @@ class Painter {
     ChecksumIndex index_;
     DrawnSurface surface_;
     Camera camera_;
-    double occluder_radius_;
+    PartMesher mesher_;
     Texture day_, night_, relief_, patch_texture_;
     bool from_afar_ = false;
     std::optional<TerrainPass> terrain_;

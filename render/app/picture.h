@@ -6,18 +6,27 @@
 #include <vector>
 
 #include "planet/elevation/elevation_field.h"
+#include "planet/store/resident_tiles.h"
 #include "render/app/render_options.h"
 
 namespace render {
+
+/// What the mesh of a frame costs, given that of the frame before.
+struct FrameCost {
+    double seconds = 0;  ///< of one processor, to update it
+    std::uint64_t sent_bytes = 0;
+};
 
 /// What was drawn, for the report. Counts are of what was built for this view.
 struct PictureReport {
     std::uint64_t triangles = 0;
     std::uint64_t vertices = 0;
     std::uint64_t strip_indices = 0;
-    std::uint64_t tiles = 0;          ///< elevation tiles in use
+    planet::ResidentCounts tiles;     ///< elevation tiles in use
+    std::uint64_t sent_bytes = 0;     ///< of the mesh, to the GPU, over all parts
+    FrameCost at_rest, moving;        ///< with RenderOptions::measure_frames
     double deviation_max_m = 0;       ///< largest certified deviation of a drawn cell
-    double pixel_deviation_max = 0;   ///< pixels, certified, over the picture
+    double pixel_deviation_max = 0;   ///< pixels, certified; infinite beside a damaged tile
     double eye_height_m = 0;          ///< above the ellipsoid
     std::vector<std::string> damage;  ///< a line for each tile that could not be read; its parent stood in for it
     std::string crs;                  ///< of what is drawn, e.g. "EPSG:4979"

@@ -105,6 +105,14 @@ void add_drawing_options(CLI::App& command, RenderOptions& o) {
               [&](Where where, const std::string& text) {
                   o.max_pixel_deviation = parse_number(where, text, {0.05, 100}, "pixels");
               });
+    add_value(command, "--max-triangles", "COUNT", "The best picture with at most so many triangles",
+              [&](Where where, const std::string& text) {
+                  o.max_triangles = static_cast<std::size_t>(parse_whole(where, text, 1, 2'000'000'000));
+              });
+    add_value(command, "--memory", "BYTES", "Limit of elevation tiles kept, e.g. 512MiB [1GiB]",
+              [&](Where where, const std::string& text) {
+                  o.memory_bytes = parse_memory(where, text, std::size_t{1} << 20, std::size_t{1} << 40);
+              });
     add_value(command, "--show", "LIST", "Draw on top: mesh,levels,curve",
               [&](Where where, const std::string& text) { o.show = overlays_from_text(where, text); });
     add_value(command, "--samples", "COUNT", "Samples a pixel: 1, 2, 4, 8 [4 near the ground, 1 from afar]",

@@ -49,12 +49,15 @@ struct RenderOptions {
     /// Places the sun and the stars. Default 2026-06-21T09:00:00Z: the June solstice, morning over Africa.
     planet::UtcTime time = std::chrono::sys_days{std::chrono::year{2026} / 6 / 21} + std::chrono::hours{9};
 
-    double exaggeration = 1;           ///< of heights, 0..100
-    double max_pixel_deviation = 0.5;  ///< pixels, 0.05..100: the certified bound on what the mesh may be off
-    std::uint32_t show = 0;            ///< Overlay bits
-    int samples = 0;                   ///< a pixel: 1, 2, 4 or 8, at most what the context has; 0: 4 where ridges can
-                                       ///< stand against the sky, 1 from afar, where the air hides the edge
-    int threads = 0;                   ///< 1..256; 0: as many as there are processors. Changes no byte
+    double exaggeration = 1;                     ///< of heights, 0..100
+    double max_pixel_deviation = 0.5;            ///< pixels, 0.05..100: the certified bound on what the mesh may be off
+    std::optional<std::size_t> max_triangles{};  ///< >= 1: coarser than max_pixel_deviation asks for, if it takes more
+    std::size_t memory_bytes = std::size_t{1} << 30;  ///< of elevation tiles; what the picture needs is drawn anyway
+    bool measure_frames = false;                      ///< what a next frame would cost, for the report
+    std::uint32_t show = 0;                           ///< Overlay bits
+    int samples = 0;  ///< a pixel: 1, 2, 4 or 8, at most what the context has; 0: 4 where ridges can
+                      ///< stand against the sky, 1 from afar, where the air hides the edge
+    int threads = 0;  ///< 1..256; 0: as many as there are processors. Changes no byte
     BackendChoice backend = BackendChoice::automatic;
 
     EarthSources earth{};

@@ -95,7 +95,7 @@ constexpr BadCall bad_calls[] = {
     {"query height 1,2 --elevation missing.tif", 3, "octaglobe: missing.tif: "},
     {"query height 1,2 --elevation empty.tif", 3, "octaglobe: empty.tif: "},
     {"query height 1,2 --elevation text.tif", 3, "octaglobe: text.tif: "},
-    {"info extra", 2, "octaglobe: info: 'extra' is too much"},
+    {"info extra", 3, "octaglobe: extra: no such file"},
     {"check --json .", 2, "octaglobe: --json: "},
 };
 
@@ -128,15 +128,17 @@ TEST(Program, DistancePrintsMetresFirst) {
 TEST(Program, HeightOfTheShippedEarth) {
     const ScratchFolder folder;
     const ScratchVariable data("OCTAGLOBE_DATA", OCTAGLOBE_SOURCE_DIR "/data");
-    // Blanca Peak is 4372 m high; its 3" samples are some tens of metres lower.
+    // Blanca Peak is 4372 m high; the surface through every other 3" sample is some tens of metres lower.
     const Outcome peak = run(folder.path(), words("query height 37.5767,-105.4858 --json h.json"));
     EXPECT_EQ(peak.status, 0) << peak.err;
-    EXPECT_NEAR(std::strtod(peak.out.c_str(), nullptr), 4372, 60);
+    EXPECT_NEAR(std::strtod(peak.out.c_str(), nullptr), 4372, 100);
     const auto json = nlohmann::json::parse(content(folder / "h.json"));
-    EXPECT_NEAR(json.at("height_m").get<double>(), 4372, 60);
+    EXPECT_NEAR(json.at("height_m").get<double>(), 4372, 100);
+    EXPECT_GT(json.at("height_bound_m").get<double>(), 10);
     EXPECT_EQ(json.at("ellipsoidal_height_m").get<double>(),
               json.at("height_m").get<double>() + json.at("geoid_undulation_m").get<double>());
-    EXPECT_EQ(std::strtod(run(folder.path(), words("query height -16.5,180")).out.c_str(), nullptr), 0) << "the sea";
+    EXPECT_NEAR(std::strtod(run(folder.path(), words("query height -16.5,180")).out.c_str(), nullptr), 0, 2)
+        << "cells of the sea are flat, 9 km wide, and sag";
 }
 
 TEST(Program, NegativePlacesAreValues) {

@@ -1,0 +1,58 @@
+#pragma once
+// The meshes that a picture's parts are drawn from.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+
+#include "planet/mesh/segments.h"
+#include "planet/store/resident_tiles.h"
+#include "render/app/drawn_surface.h"
+#include "render/app/steps.h"
+#include "render/picture/camera.h"
+#include "render/picture/relief_patches.h"
+
+namespace render {
+
+struct PartMesh {
+    planet::Segments segments;
+    ReliefPatches patches;
+    planet::SegmentView view;        ///< that it was built for
+    double deviation_max_m = 0;      ///< certified, of what is drawn
+    double pixel_deviation_max = 0;  ///< pixels, certified; infinite if a damaged tile hides what is beside the eye
+};
+
+/// Makes one mesh at a time, settled: every tile that the part needs is waited for.
+class PartMesher {
+  public:
+    /// All must outlive it.
+    PartMesher(const RenderOptions& options, const DrawnSurface& surface, const Camera& camera, Steps& steps)
+        : options_(options), surface_(surface), camera_(camera), steps_(steps) {}
+
+    /// Throws planet::Error(bad_usage) if the coarsest mesh has more triangles than RenderOptions::max_triangles.
+    void build(const PicturePart& part, PartMesh& mesh);
+
+    /// What build() takes its tiles from.
+    const planet::TileSource& tiles() const;
+    planet::ResidentCounts counts() const;
+
+  private:
+    /// The split test's K, and by how much it is coarser than the picture asked for.
+    struct Fineness {
+        double K, coarsening;
+    };
+    planet::SegmentView view(const PicturePart& part, double segment_angle) const;
+    Fineness fineness(double segment_angle);
+    void build_segments(PartMesh& mesh);
+    void certify(PartMesh& mesh, double coarsening) const;
+
+    const RenderOptions& options_;
+    const DrawnSurface& surface_;
+    const Camera& camera_;
+    Steps& steps_;
+    std::map<double, Fineness> fineness_;  // by segment angle: the same in all parts
+    // Only once a tile is known to be damaged: the cells of its parent stand in for it without a crack.
+    std::unique_ptr<planet::ResidentTiles> around_damage_;
+};
+
+}  // namespace render
