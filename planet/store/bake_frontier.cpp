@@ -60,6 +60,7 @@ std::vector<LocationCode> tiles_around(LocationCode root) {
 
 void Frontier::add(std::unique_ptr<FrontierTile> added) {
     FrontierTile& tile = *added;
+    height_bytes_ += tile.height.bytes();
     tiles_.emplace(tile.root.bits(), std::move(added));
     meet_around(tile);
     meet_beside(tile);
@@ -171,6 +172,7 @@ void Frontier::finish(FrontierTile& tile) {
     const auto found = tiles_.find(tile.root.bits());
     final_.push_back(std::move(found->second));
     tiles_.erase(found);
+    height_bytes_ -= tile.height.bytes();
     if (!tile.inner) give_back(std::move(tile.records));
 }
 

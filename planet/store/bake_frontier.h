@@ -24,6 +24,7 @@
 
 #include "planet/store/bake_settling.h"
 #include "planet/store/coverage.h"
+#include "planet/store/packed_heights.h"
 
 namespace planet {
 
@@ -50,7 +51,7 @@ struct FrontierTile {
     int depth = 0;
     InnerTile* above = nullptr;
     std::unique_ptr<InnerTile> inner;      ///< if it has tiles below
-    std::vector<float> height;             ///< by vertex index; empty for inner tiles, which have their own
+    PackedHeights height;                  ///< by vertex index; empty for inner tiles, which have their own
     std::vector<float> undulation;         ///< by vertex index, those that are not interpolated; at least the corners'
     float resampling = 0;                  ///< Tile::resampling
     glm::vec3 split_position{0};           ///< of the root's split vertex, rounded
@@ -94,6 +95,8 @@ class Frontier {
     std::unique_ptr<FrontierTile> next_final();
 
     std::size_t size() const { return tiles_.size(); }
+    /// Of the heights of its tiles.
+    std::size_t height_bytes() const { return height_bytes_; }
     /// How many tiles have records that could be dropped.
     std::size_t kept() const { return kept_.size(); }
     /// Drops the records of the tiles that have not been used for longest until `most` are kept.
@@ -117,6 +120,7 @@ class Frontier {
     std::unordered_map<std::uint64_t, std::unique_ptr<FrontierTile>> tiles_;
     std::deque<FrontierTile*> to_settle_;
     std::deque<std::unique_ptr<FrontierTile>> final_;
+    std::size_t height_bytes_ = 0;
     std::list<FrontierTile*> kept_;  // the last used first
     std::vector<std::unique_ptr<TileRecords>> spare_;
 };

@@ -15,11 +15,11 @@ namespace planet {
 
 namespace {
 
-constexpr std::size_t transaction_bytes = 4 << 20;
+constexpr std::size_t transaction_bytes = 2 << 20;
 
-// Estimates, of a thread's scratch, of a tile in the frontier without its records, and of all else.
+// Estimates, of a thread's scratch, of a tile in the frontier without its records and heights, and of all else.
 constexpr std::size_t thread_bytes = std::size_t{3} << 19;
-constexpr std::size_t frontier_tile_bytes = tile_vertices * sizeof(float) + 2 * 189 * sizeof(SideSteps) + 768;
+constexpr std::size_t frontier_tile_bytes = 2 * 189 * sizeof(SideSteps) + 768;
 constexpr std::size_t fixed_bytes = (std::size_t{4} << 20) + transaction_bytes;
 
 std::size_t threads_of(const BakeOptions& options) {
@@ -334,7 +334,8 @@ void BakeRun::write(Lock& lock) {
 // Records of tiles in the frontier are kept in what is left of the memory.
 void BakeRun::keep_within_memory() {
     const std::size_t limit = usable_bytes(scene_.options);
-    const std::size_t needed = least_bytes_ + inner_bytes_ + to_write_bytes_ + frontier_.size() * frontier_tile_bytes;
+    const std::size_t needed = least_bytes_ + inner_bytes_ + to_write_bytes_ + frontier_.size() * frontier_tile_bytes +
+                               frontier_.height_bytes();
     if (needed > limit) refuse_memory(scene_.options);
     frontier_.keep_at_most((limit - needed) / sizeof(TileRecords));
     most_bytes_ = std::max(most_bytes_, needed + frontier_.kept() * sizeof(TileRecords));

@@ -96,7 +96,7 @@ std::unique_ptr<FrontierTile> TileMaker::measure(LocationCode root, InnerTile* a
     timed(BakeStep::certifying, [&] {
         tile->resampling = resampling_.largest({scene_.field, scene_.scale.placement, tile_, lattice_, exists_}, {});
     });
-    tile->height = tile_.height;
+    tile->height = PackedHeights(tile_.height, scene_.scale.quantum_m);
     const std::size_t own = std::max<std::size_t>(3, own_undulations(root, tile_.depth));
     for (std::size_t v = 0; scene_.scale.has_undulation && v < own; ++v)
         tile->undulation.push_back(static_cast<float>(tile_.undulation[v].m));
@@ -172,7 +172,7 @@ void TileMaker::restore(const FrontierTile& tile) {
     tile_.root = tile.root;
     tile_.depth = tile.depth;
     tile_.resampling = tile.resampling;
-    tile_.height.assign(tile.height.begin(), tile.height.end());
+    tile.height.unpack(tile_.height);
     tile_.child_exists.reset();
     exists_.resize(std::size_t{1} << tile.depth);
     existence_.of_tile(tile.root, exists_);
