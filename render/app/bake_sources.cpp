@@ -63,10 +63,6 @@ std::shared_ptr<const planet::ElevationField> open_bake_sources(const BakeComman
     options.geoid = [geoid](const glm::dvec3& normal) { return geoid->undulation(normal); };
     options.memory_bytes = memory_bytes;
     options.base = base;
-    // Sources that are all above the ellipsoid stay so: nothing is converted, and no geoid comes in.
-    const auto above_ellipsoid = [](planet::VerticalDatum d) { return d == planet::VerticalDatum::ellipsoid; };
-    if (!base && !command.datum.empty() && std::all_of(command.datum.begin(), command.datum.end(), above_ellipsoid))
-        options.datum = planet::VerticalDatum::ellipsoid;
     options.progress = progress;
     return planet::open_elevation_sources(specs, options);
 }

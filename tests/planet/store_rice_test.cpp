@@ -13,7 +13,8 @@ TEST(StoreRice, WhatIsWrittenIsRead) {
     std::vector<std::vector<std::uint32_t>> groups{{}, {0}, {UINT32_MAX}, {0, 0, 0, UINT32_MAX, 1}};
     for (int bits = 0; bits <= 32; ++bits) {
         groups.emplace_back();
-        for (int i = 0; i < 50; ++i) groups.back().push_back(static_cast<std::uint32_t>(random() & ((std::uint64_t{1} << bits) - 1)));
+        for (int i = 0; i < 50; ++i)
+            groups.back().push_back(static_cast<std::uint32_t>(random() & ((std::uint64_t{1} << bits) - 1)));
     }
     ByteWriter out;
     out.u8(7);
