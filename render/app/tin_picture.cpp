@@ -21,8 +21,7 @@ constexpr int margin = 56, gutter = 40, caption_height = 92, footer_height = 22;
 constexpr double text_size = 21, small_text_size = 17;
 constexpr float side_width = 1.25f;
 
-constexpr Color side_color{214, 236, 255, 150}, ring_color{255, 255, 255}, ring_casing{8, 10, 24},
-    no_data{226, 229, 235};
+constexpr Color side_color{214, 236, 255}, ring_color{255, 255, 255}, ring_casing{8, 10, 24}, no_data{226, 229, 235};
 
 /// From lightness 0..1 (0.5: half as light to the eye), chroma and hue in degrees. (Ottosson, "A perceptual color space
 /// for image processing", 2020.)
@@ -238,7 +237,9 @@ class Sheet {
         for (const auto& t : mesh.triangles)
             for (std::size_t k = 0; k < 3; ++k)
                 strokes_.add({place(mesh.vertices[t[k]]), place(mesh.vertices[t[(k + 1) % 3]]), side_width, {}});
-        strokes_.paint(image_, side_color);
+        // Fainter where there are so many that they would hide the colours.
+        const double many = static_cast<double>(mesh.triangles.size()) / 600;
+        strokes_.paint(image_, with_alpha(side_color, std::clamp(0.6 / std::sqrt(many), 0.25, 0.6)));
         strokes_.clip(whole());
     }
 
