@@ -18,8 +18,8 @@ constexpr int margin = 1;  ///< pixels around the raster
 /// Floats hold whole numbers up to there.
 constexpr std::uint32_t number_end = 1u << 24;
 
-Framebuffer make_target(const planet::HeightGrid& grid, GLenum format, bool depth) {
-    return {grid.width() + 2 * margin, grid.height() + 2 * margin, {.color_format = format, .depth = depth}};
+Framebuffer make_target(const planet::HeightGrid& grid, GLenum format) {
+    return {grid.width() + 2 * margin, grid.height() + 2 * margin, {.color_format = format}};
 }
 
 void require_drawable(const planet::HeightGrid& grid) {
@@ -35,20 +35,16 @@ void require_drawable(const planet::HeightGrid& grid) {
 TinDeviation::TinDeviation(const planet::HeightGrid& grid) : grid_(grid) {
     require_drawable(grid);
     raster_program_ = Program::link({"full_screen.vert.glsl", "tin_raster.frag.glsl"});
-    depth_program_ = Program::link({"tin_depth.vert.glsl", "tin_depth.frag.glsl"});
-    deviation_program_ = Program::link({"full_screen.vert.glsl", "tin_deviation.frag.glsl"});
-    raster_ = make_target(grid, GL_R8, true);
-    tin_ = make_target(grid, GL_R32F, true);
-    deviation_ = make_target(grid, GL_RG32F, false);
+    deviation_program_ = Program::link({"tin_deviation.vert.glsl", "tin_deviation.frag.glsl"});
+    raster_ = make_target(grid, GL_R8);
+    deviation_ = make_target(grid, GL_RG32F);
     no_vertices_ = VertexArray::create();
     array_ = VertexArray::create();
     draw_raster();
-    tin_.clear(0, 0, 0, 0);
-    depth_program_.set("size", glm::ivec2(tin_.width(), tin_.height()));
-    depth_program_.set("margin", margin);
+    deviation_.clear(0, 0, 0, 0);
+    deviation_program_.set("size", glm::ivec2(deviation_.width(), deviation_.height()));
+    deviation_program_.set("margin", margin);
     deviation_program_.set("raster_depth", 0);
-    deviation_program_.set("tin_depth", 1);
-    deviation_program_.set("tin_numbers", 2);
     deviation_program_.set("metres", static_cast<float>(2 * range_));
     require_gl("TinDeviation");
 }
@@ -96,7 +92,7 @@ void TinDeviation::draw_raster() {
 void TinDeviation::measure(const Delaunay& mesh, std::span<const Delaunay::Index> triangles, std::span<Measured> out) {
     std::ranges::fill(out, Measured{});
     if (first_number_ + triangles.size() > number_end) {
-        tin_.clear(0, 0, 0, 0);
+        deviation_.clear(0, 0, 0, 0);
         first_number_ = 1;
     }
     if (triangles.size() >= number_end)
@@ -167,18 +163,11 @@ void TinDeviation::draw(const Window& window) {
     gl().Enable(GL_DEPTH_TEST);
     gl().DepthFunc(GL_ALWAYS);
     gl().DepthMask(GL_TRUE);
-    tin_.bind();
-    depth_program_.use();
-    array_.bind();
-    gl().DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices_.size()));
-
     deviation_.bind();
     deviation_program_.use();
     raster_.depth().bind(0);
-    tin_.depth().bind(1);
-    tin_.color().bind(2);
-    no_vertices_.bind();
-    gl().DrawArrays(GL_TRIANGLES, 0, 3);
+    array_.bind();
+    gl().DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices_.size()));
     gl().Disable(GL_SCISSOR_TEST);
     check_gl("TinDeviation::draw");
 }

@@ -1,7 +1,7 @@
 #pragma once
-// The deviations of a triangulation from its raster, measured by drawing: raster and triangulation to depth, then their
-// absolute difference in a fragment shader, of which the window that an insertion has made dirty is read back (Raudins,
-// "Iterative TIN").
+// The deviations of a triangulation from its raster, measured by drawing: the raster to depth once, then new triangles to
+// depth, with the absolute difference of both from the fragment shader; the window that an insertion has made dirty is
+// read back (Raudins, "Iterative TIN").
 //
 // Samples are the middles of pixels, so vertices lie there too, and a sample on a side belongs to one triangle by the
 // rules of rasterization. Where the raster ends, triangles are drawn one pixel beyond, lest those rules leave out the
@@ -24,7 +24,7 @@ class TinDeviation : public planet::TinMeasure {
     /// Draws the raster, with the context that is current on this thread and has to be for every measurement.
     /// @param grid stays as long as this
     /// Throws planet::Error: bad_usage for a raster larger than what can be drawn to, no_graphics if the driver has no
-    /// memory for it: about 21 bytes a sample.
+    /// memory for it: about 17 bytes a sample.
     explicit TinDeviation(const planet::HeightGrid& grid);
 
     void measure(const planet::Delaunay& mesh, std::span<const planet::Delaunay::Index> triangles,
@@ -59,8 +59,8 @@ class TinDeviation : public planet::TinMeasure {
 
     const planet::HeightGrid& grid_;
     double lowest_ = 0, range_ = 1, depth_step_ = 0;
-    Program raster_program_, depth_program_, deviation_program_;
-    Framebuffer raster_, tin_, deviation_;
+    Program raster_program_, deviation_program_;
+    Framebuffer raster_, deviation_;
     VertexArray no_vertices_, array_;
     Buffer buffer_;
     std::vector<Vertex> vertices_;

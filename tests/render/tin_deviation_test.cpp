@@ -222,7 +222,7 @@ TEST(TinByDrawing, OfTheShippedDemIsThatOfTheLocalMeasure) {
     const planet::Raster raster = planet::read_raster(OCTAGLOBE_SOURCE_DIR "/data/sangre_de_cristo.tif");
     const HeightGrid grid(raster);
     TinDeviation deviation(grid);
-    for (const double tolerance : {90.0, 180.0}) {
+    for (const double tolerance : {60.0, 120.0}) {
         planet::GreedyOptions options;
         options.tolerance = tolerance;
         Delaunay local = coarsest_tin(grid), drawn = coarsest_tin(grid);
