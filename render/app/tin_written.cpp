@@ -1,6 +1,7 @@
 #include "render/app/tin_written.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "planet/error.h"
@@ -30,14 +31,13 @@ class Floor {
         level_ = height_range(z).x - base * frame.exaggeration();
     }
 
-    std::vector<glm::dvec3> places(const std::vector<glm::ivec2>& below) const {
-        std::vector<glm::dvec2> at(below.begin(), below.end());
-        const std::vector<double> heights(below.size(), height_);
-        std::vector<glm::dvec3> out(below.size());
-        frame_.place(at, heights, out, {});
-        if (level_)
-            for (glm::dvec3& p : out) p.z = *level_;
-        return out;
+    void append_places(const std::vector<glm::ivec2>& below, std::vector<glm::dvec3>& places) const {
+        for (const glm::ivec2 sample : below) {
+            const glm::dvec2 at(sample);
+            glm::dvec3& place = places.emplace_back();
+            frame_.place({&at, 1}, {&height_, 1}, {&place, 1}, {});
+            if (level_) place.z = *level_;
+        }
     }
 
   private:
@@ -48,7 +48,7 @@ class Floor {
 
 void close_below(WrittenTin& tin, const planet::TinSolid& solid, const Floor& floor, bool mirrored) {
     planet::SurfaceMesh& surface = tin.surface;
-    std::ranges::move(floor.places(solid.floor), std::back_inserter(surface.vertices));
+    floor.append_places(solid.floor, surface.vertices);
     for (auto t : solid.below) {
         if (mirrored) std::swap(t[1], t[2]);
         surface.triangles.push_back(t);
@@ -65,23 +65,98 @@ class Certifier {
         if (goal.base) floor_.emplace(grid, frame, *goal.base);
     }
 
+    /// All triangles are measured at first and in the end; between, those that mending has made.
     WrittenTin run(planet::TinMesh mesh) {
         WrittenTin tin;
-        for (tin.mesh = std::move(mesh);;) {
-            place(tin);
-            tin.deviation =
-                planet::measure_written(tin.mesh, tin.surface.vertices, grid_, frame_, goal_.threads, goal_.by_sample);
-            tin.deviation_max = tin.deviation.max + grid_.sample_rounding();
-            const std::vector<glm::ivec2> samples = too_far(tin);
-            if (samples.empty()) return tin;
-            planet::TinMesh mended = planet::with_samples(tin.mesh, grid_, samples, goal_.features);
-            if (mended.triangles.size() > goal_.max_triangles) return tin;
-            tin.inserted += samples.size();
-            tin.mesh = std::move(mended);
+        tin.mesh = std::move(mesh);
+        place(tin);
+        for (;;) {
+            measure_all(tin);
+            Findings found = look(tin.mesh, tin.deviation);
+            tin.kept = found.too_far == 0;
+            tin.mendable = tin.kept || !found.samples.empty() || !found.border.empty();
+            tin.border_samples = std::move(found.border);
+            if (found.samples.empty()) return tin;
+            std::sort(found.within.begin(), found.within.end());
+            if (!mend(tin, std::move(found))) return tin;
         }
     }
 
   private:
+    struct Findings {
+        std::size_t too_far = 0;            ///< triangles
+        std::vector<glm::ivec2> samples;    ///< the worst of each; corners cannot be inserted again
+        std::vector<glm::ivec2> border;     ///< those on a shared border
+        std::vector<std::uint64_t> within;  ///< keys of triangles within the tolerance
+    };
+
+    void measure_all(WrittenTin& tin) const {
+        tin.deviation =
+            planet::measure_written(tin.mesh, tin.surface.vertices, grid_, frame_, goal_.threads, goal_.by_sample);
+        tin.deviation_max = tin.deviation.max + grid_.sample_rounding();
+    }
+
+    Findings look(const planet::TinMesh& mesh, const planet::WrittenDeviation& deviation) const {
+        Findings found;
+        const double bound = goal_.tolerance + tin_measuring_slack_m - grid_.sample_rounding();
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            if (!(deviation.by_triangle[i] > bound)) {
+                if (std::isfinite(bound)) found.within.push_back(key(mesh, i));
+                continue;
+            }
+            ++found.too_far;
+            const glm::ivec2 worst = deviation.farthest[i];
+            if (std::ranges::any_of(mesh.triangles[i], [&](auto v) { return mesh.vertices[v] == worst; })) continue;
+            (goal_.border_is_shared && on_border(worst) ? found.border : found.samples).push_back(worst);
+        }
+        return found;
+    }
+
+    /// Of a triangle, by its corners. That two share one is as good as impossible, and would be noticed in the end.
+    static std::uint64_t key(const planet::TinMesh& mesh, std::size_t triangle) {
+        std::array<std::uint64_t, 3> corner{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::ivec2 p = mesh.vertices[mesh.triangles[triangle][k]];
+            corner[k] = std::uint64_t{static_cast<std::uint32_t>(p.y)} << 32 | static_cast<std::uint32_t>(p.x);
+        }
+        std::sort(corner.begin(), corner.end());
+        std::uint64_t key = 0;
+        for (const std::uint64_t c : corner) {  // as splitmix64 stirs
+            key = (key ^ c) * 0xbf58476d1ce4e5b9u;
+            key ^= key >> 29;
+        }
+        return key;
+    }
+
+    /// Inserts the worst samples until no triangle that this makes is too far.
+    /// @return false, and the last state is measured, if that takes more triangles than there may be
+    bool mend(WrittenTin& tin, Findings found) const {
+        while (!found.samples.empty()) {
+            planet::TinMesh mended = planet::with_samples(tin.mesh, grid_, found.samples, goal_.features);
+            if (mended.triangles.size() > goal_.max_triangles) {
+                measure_all(tin);
+                return false;
+            }
+            tin.inserted += found.samples.size();
+            tin.mesh = std::move(mended);
+            const double step = tin.rounding.step;
+            place(tin);
+            if (tin.rounding.step != step) found.within.clear();  // everything has moved
+            planet::TinMesh fresh{tin.mesh.vertices, {}, {}};
+            for (std::size_t i = 0; i < tin.mesh.triangles.size(); ++i)
+                if (!std::binary_search(found.within.begin(), found.within.end(), key(tin.mesh, i)))
+                    fresh.triangles.push_back(tin.mesh.triangles[i]);
+            Findings more =
+                look(fresh, planet::measure_written(fresh, tin.surface.vertices, grid_, frame_, goal_.threads));
+            const auto middle = static_cast<std::ptrdiff_t>(found.within.size());
+            found.within.insert(found.within.end(), more.within.begin(), more.within.end());
+            std::sort(found.within.begin() + middle, found.within.end());
+            std::inplace_merge(found.within.begin(), found.within.begin() + middle, found.within.end());
+            found.samples = std::move(more.samples);
+        }
+        return true;
+    }
+
     void place(WrittenTin& tin) const {
         if (tin.mesh.triangles.empty())
             throw Error(Fault::bad_data, "the TIN", "no triangle has three valid corners",
@@ -96,24 +171,6 @@ class Certifier {
         if (std::ranges::any_of(tin.surface.vertices, is_nowhere))
             throw Error(Fault::bad_usage, "--frame", "does not reach all of the raster", "another frame, e.g. source");
         tin.rounding = planet::round_to_format(tin.surface, frame_.reference(), goal_.format, goal_.least_step);
-    }
-
-    /// The worst samples of triangles that exceed the tolerance. Corners cannot be inserted again.
-    std::vector<glm::ivec2> too_far(WrittenTin& tin) const {
-        std::vector<glm::ivec2> samples;
-        const double bound = goal_.tolerance + tin_measuring_slack_m - grid_.sample_rounding();
-        tin.kept = true;
-        tin.border_samples.clear();
-        for (std::size_t i = 0; i < tin.mesh.triangles.size(); ++i) {
-            if (!(tin.deviation.by_triangle[i] > bound)) continue;
-            tin.kept = false;
-            const glm::ivec2 worst = tin.deviation.farthest[i];
-            if (std::ranges::any_of(tin.mesh.triangles[i], [&](auto v) { return tin.mesh.vertices[v] == worst; }))
-                continue;
-            (goal_.border_is_shared && on_border(worst) ? tin.border_samples : samples).push_back(worst);
-        }
-        tin.mendable = tin.kept || !samples.empty() || !tin.border_samples.empty();
-        return samples;
     }
 
     bool on_border(glm::ivec2 p) const {
