@@ -50,7 +50,7 @@ HeightGrid heights_of(const RasterMosaic& mosaic, std::size_t most) {
         throw Error(Fault::bad_data, raster.name, size + "have no area", "2x2 samples or more");
     if (raster.count() > most || std::max(raster.width, raster.height) > HeightGrid::max_side)
         throw Error(Fault::bad_data, raster.name, size + "are too many for one mesh",
-                    "at most " + std::to_string(most) + ", or tiles");
+                    "at most " + std::to_string(most) + "; with --tile any number");
     HeightGrid grid = heights_of(mosaic, {0, 0, raster.width, raster.height});
     if (grid.has_void() && grid.valid_samples() == 0)
         throw Error(Fault::bad_data, raster.name, "holds no heights: every sample is nodata", "one band of heights");

@@ -1,6 +1,7 @@
 #include "planet/tin/written_tin.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -155,6 +156,13 @@ class TriangleSamples {
     std::vector<glm::vec3> up_;
 };
 
+// Along the Z-order curve, so that each point is found near the one before: by the highest bit in which two differ.
+bool before_in_quadrants(glm::ivec2 p, glm::ivec2 q) {
+    const int x = std::bit_width(static_cast<std::uint32_t>(p.x ^ q.x)),
+              y = std::bit_width(static_cast<std::uint32_t>(p.y ^ q.y));
+    return x > y ? p.x < q.x : p.y < q.y;
+}
+
 struct Sum {
     double max = 0, squares = 0, angle = std::numeric_limits<double>::infinity();
     std::size_t samples = 0;
@@ -259,8 +267,10 @@ TinMesh with_samples(const TinMesh& mesh, const HeightGrid& grid, std::span<cons
     Delaunay all = coarsest_tin(grid);
     insert_features(all, grid, features);
     all.reserve(mesh.triangles.size());
-    for (const glm::ivec2 p : mesh.vertices) all.insert(p);
-    for (const glm::ivec2 p : samples) all.insert(p);
+    std::vector<glm::ivec2> points = mesh.vertices;
+    points.insert(points.end(), samples.begin(), samples.end());
+    std::sort(points.begin(), points.end(), before_in_quadrants);
+    for (const glm::ivec2 p : points) all.insert(p);
     return triangles_over_samples(all, grid);
 }
 

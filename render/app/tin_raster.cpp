@@ -4,6 +4,7 @@
 
 #include "planet/elevation/raster_writer.h"
 #include "planet/error.h"
+#include "planet/mesh/surface_check.h"
 #include "planet/tin/make_tin.h"
 #include "render/app/figures.h"
 #include "render/app/mesh_output.h"
@@ -37,9 +38,12 @@ class TinMaker {
 
     void run() {
         read_features();
-        const WrittenTin tin = certified(make());
-        write(tin);
+        WrittenTin tin = certified(make());
         fill_report(tin);
+        tin.surface.strip = {};  // memory for writing and reading again
+        tin.deviation.by_triangle = {};
+        tin.deviation.farthest = {};
+        write(tin);
         tell(tin);
     }
 
@@ -123,7 +127,16 @@ class TinMaker {
         WrittenTin tin = as_written(std::move(made.mesh), heights_, frame_, goal);
         if (!tin.kept && !tin.mendable) refuse_bound(tin.deviation_max);
         if (!tin.kept) end_ = planet::GreedyEnd::budget;  // what would mend it is more than there may be
+        if (command_.base) check_closed(tin);
         return tin;
+    }
+
+    void check_closed(const WrittenTin& tin) {
+        const planet::SurfaceCheck found = planet::check(tin.surface, frame_.reference().frame);
+        if (found.border_sides + found.wrong_sides + found.degenerate + found.unused_vertices > 0)
+            throw Error(Fault::check_failed, "the solid", "is not closed: " + found.summary());
+        report_.set("closed", true);
+        report_.set("euler", found.euler());
     }
 
     /// @param possible metres

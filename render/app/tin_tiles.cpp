@@ -51,7 +51,7 @@ class TileMaker {
           folder_("--output", *command.output),
           source_(command),
           frame_(source_.frame(frame_kind(), format_)),
-          tiling_(source_.raster()->width, source_.raster()->height, command.tile),
+          tiling_(make_tiling()),
           end_(tiling_.width() - 1, tiling_.height() - 1),
           map_(*source_.raster()),
           figures_(tiling_.count()) {
@@ -72,6 +72,14 @@ class TileMaker {
     }
 
   private:
+    planet::TinTiling make_tiling() const {
+        constexpr std::size_t most = 1'000'000;
+        const planet::TinTiling tiling(source_.raster()->width, source_.raster()->height, command_.tile);
+        if (tiling.count() > most)
+            throw Error(Fault::bad_usage, "--tile", std::to_string(tiling.count()) + " tiles are too many",
+                        "at most " + std::to_string(most) + ": larger ones");
+        return tiling;
+    }
     MeshFrame frame_kind() const {
         if (command_.frame) return *command_.frame;
         return format_ == MeshFormat::glb || format_ == MeshFormat::stl ? MeshFrame::enu : MeshFrame::source;
