@@ -45,8 +45,8 @@ class TinMaker {
         tin.surface.strip = {};  // memory for writing and reading again
         tin.deviation.by_triangle = {};
         tin.deviation.farthest = {};
-        write(tin);
         draw_steps();
+        write(tin);
         tell(tin);
     }
 
