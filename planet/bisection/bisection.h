@@ -61,7 +61,7 @@ enum class SplitOrder { length, deviation };
 struct RefineGoal {
     static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
-    double max_side = std::numeric_limits<double>::infinity();       ///< of judged sides and of placed ones; > 0
+    double max_side = std::numeric_limits<double>::infinity();  ///< > 0; of judged sides and, in space, of placed ones
     double max_deviation = std::numeric_limits<double>::infinity();  ///< >= 0; needs `deviation`
     std::size_t max_triangles = no_limit;                            ///< never exceeded
     SplitOrder order = SplitOrder::length;                           ///< what is split first
@@ -118,7 +118,7 @@ class Bisection {
 
     /// Throws Error(bad_data), naming the triangle or side by its vertices, for a mesh without triangles, with more than 2^28
     /// of them, with indices out of range, coordinates that are not finite or beyond 1e30, triangles without area or with
-    /// two equal corners, sides of three triangles, or triangles that turn unlike their neighbours.
+    /// two equal corners, sides of three triangles, triangles that turn unlike their neighbours, or two at the same corners.
     explicit Bisection(const PlainMesh& base, BisectionOptions options = {});
     Bisection(Bisection&&) noexcept;
     Bisection& operator=(Bisection&&) noexcept;
@@ -162,8 +162,9 @@ class Bisection {
     /// The same as split records: the base mesh and its refinement in the order in which it was made.
     Progressive progressive() const;
 
+    struct State;  // bisection_state.h
+
   private:
-    struct State;
     std::unique_ptr<State> state_;
 };
 
