@@ -100,7 +100,6 @@ struct BisectionReport {
     std::size_t similarity_classes = 0, similarity_classes_max = 0;
     double side_max = 0;  ///< longest judged side
     double side_max_placed = 0;
-    std::size_t bytes = 0;  ///< of memory held
 };
 
 class Progressive;
@@ -153,6 +152,7 @@ class Bisection {
     /// std::nullopt if none does.
     std::optional<LeafSide> nearest_side(glm::dvec2 point) const;
 
+    std::size_t bytes() const;  ///< of memory held, the queue of the last refinement included
     BisectionReport report() const;
     /// Empty if all links fit, both triangles of every side know one length, longest sides are longest, every leaf turns as
     /// its base triangle does, and areas add up; else the first thing that is wrong.

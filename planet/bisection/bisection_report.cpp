@@ -126,6 +126,10 @@ std::string check_areas(const LeafMesh& mesh) {
 
 }  // namespace
 
+std::size_t Bisection::bytes() const {
+    return state_->mesh.bytes() + state_->queue_bytes + state_->base_angle.capacity() * sizeof(double);
+}
+
 BisectionReport Bisection::report() const {
     const LeafMesh& mesh = state_->mesh;
     BisectionReport report;
@@ -141,7 +145,6 @@ BisectionReport Bisection::report() const {
     report.propagation_max = state_->propagated_max;
     measure_angles(*state_, report);
     count_shapes(mesh, report);
-    report.bytes = mesh.bytes() + state_->queue_bytes + state_->base_angle.capacity() * sizeof(double);
     return report;
 }
 

@@ -63,7 +63,7 @@ LeafMesh::LeafMesh(const PlainMesh& base, const BisectionOptions& options)
       base_vertices_(base.vertices.size()),
       base_triangles_(base.triangles.size()),
       base_corners_(base.triangles),
-      flat_(base.vertices),
+      flat_(base.vertices.begin(), base.vertices.end()),
       attributes_(base.attributes),
       attribute_width_(base.attribute_width) {
     const auto links = base_links(base);

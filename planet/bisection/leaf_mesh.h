@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "planet/bisection/huge_pages.h"
 #include "planet/bisection/progressive.h"
 #include "planet/bisection/shape.h"
 
@@ -97,7 +98,20 @@ class LeafMesh {
     void reserve(std::size_t leaves);
     std::size_t bytes() const;
 
-    void prefetch(Index t) const { __builtin_prefetch(&leaves_[t]); }
+    /// Fetch into the cache what the split of a leaf will need: first the leaf, then what lies around it, then
+    /// what lies around its neighbour.
+    void prefetch_leaf(Index t) const { __builtin_prefetch(&leaves_[t]); }
+    void prefetch_around(Index t) const {
+        const Leaf& leaf = leaves_[t];
+        if (leaf.beyond[0] != none) prefetch_leaf(leaf.beyond[0]);
+        if (leaf.beyond[1] != none) prefetch_leaf(leaf.beyond[1]);
+        __builtin_prefetch(&flat_[leaf.corner[0]]);
+        __builtin_prefetch(&flat_[leaf.corner[1]]);
+    }
+    void prefetch_beyond(Index t) const {
+        const Index n = leaves_[t].beyond[0];
+        if (n != none && leaves_[n].beyond[1] != none) prefetch_leaf(leaves_[n].beyond[1]);
+    }
 
   private:
     struct Halves {
@@ -118,9 +132,9 @@ class LeafMesh {
     BisectionOptions options_;
     std::size_t base_vertices_, base_triangles_, base_border_ = 0;
     std::vector<std::array<Index, 3>> base_corners_;
-    std::vector<Leaf> leaves_;
-    std::vector<glm::dvec3> flat_;    ///< midpoints
-    std::vector<glm::dvec3> placed_;  ///< empty if places are midpoints
+    LargeArray<Leaf> leaves_;
+    LargeArray<glm::dvec3> flat_;    ///< midpoints
+    LargeArray<glm::dvec3> placed_;  ///< empty if places are midpoints
     std::vector<float> attributes_;
     std::size_t attribute_width_;
     std::vector<SplitRecord> records_;

@@ -5,6 +5,7 @@
 // splits that follow.
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -72,18 +73,28 @@ class LengthQueue {
         return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(squared) >> 45);
     }
     bool stale(const Entry& e) const { return mesh_[e.leaf].squared[0] != e.squared; }
-    void prefetch() const {
-        if (next_ + 4 < sorted_.size()) mesh_.prefetch(mesh_[sorted_[next_ + 4].leaf].beyond[1]);
+    // Memory answers after as long as a few splits take.
+    void prefetch() {
+        const auto ahead = [&](std::size_t& done, std::size_t distance, auto fetch) {
+            for (const std::size_t end = std::min(next_ + distance, sorted_.size()); done < end; ++done)
+                (mesh_.*fetch)(sorted_[done].leaf);
+        };
+        ahead(fetched_[0], 24, &LeafMesh::prefetch_leaf);
+        ahead(fetched_[1], 16, &LeafMesh::prefetch_around);
+        ahead(fetched_[2], 8, &LeafMesh::prefetch_beyond);
     }
 
     // Sorts the next bucket in which anything is left. One of two leaves that share their longest sides is enough.
     bool advance() {
         sorted_.clear();
         next_ = 0;
+        fetched_ = {};
         for (std::size_t b = current_ == buckets_.size() ? 0 : current_ + 1; b < buckets_.size(); ++b) {
             if (buckets_[b].empty()) continue;
             current_ = b;
-            for (const Index t : buckets_[b]) {
+            for (std::size_t i = 0; i < buckets_[b].size(); ++i) {
+                if (i + 16 < buckets_[b].size()) mesh_.prefetch_leaf(buckets_[b][i + 16]);
+                const Index t = buckets_[b][i];
                 const Leaf& leaf = mesh_[t];
                 if (top_ - place_of(leaf.squared[0]) != b) continue;
                 const Index n = leaf.beyond[0];
@@ -105,6 +116,7 @@ class LengthQueue {
     std::size_t current_;                      ///< bucket that is sorted; their number before the first
     std::vector<Entry> sorted_;                ///< the longest first
     std::size_t next_ = 0;
+    std::array<std::size_t, 3> fetched_{};  ///< leaves of the sorted ones for which each prefetch was done
     std::vector<Entry> late_;  ///< a heap: those that came when their bucket was sorted already
 };
 

@@ -14,7 +14,7 @@ Progressive::Progressive(PlainMesh base, BisectionRule rule, SideGeometry sides)
       base_vertices_(static_cast<Index>(base_.vertices.size())),
       rule_(rule),
       sides_(sides),
-      places_(base_.vertices),
+      places_(base_.vertices.begin(), base_.vertices.end()),
       splitter_(base_.triangles.size(), none) {}
 
 void Progressive::set_note(std::string note) {
@@ -97,6 +97,25 @@ bool Progressive::append(const SplitRecord& record, const glm::dvec3* place) {
     if (inner) splitter_[record.second / 3] = v;
     splitter_.insert(splitter_.end(), 4, none);
     return true;
+}
+
+void Progressive::prefetch_parents(const SplitRecord& record) const {
+    const auto roots = static_cast<Index>(base_.triangles.size());
+    for (const Index side : {record.first, record.second}) {
+        const Index name = side / 3;
+        if (name >= splitter_.size()) continue;
+        __builtin_prefetch(&splitter_[name]);
+        if (name >= roots) __builtin_prefetch(&splits_[(name - roots) / 4]);
+    }
+}
+
+void Progressive::prefetch_ends(const SplitRecord& record) const {
+    const auto roots = static_cast<Index>(base_.triangles.size());
+    const Index name = record.first / 3;
+    if (name < roots || name >= splitter_.size()) return;
+    const Split& s = splits_[(name - roots) / 4];
+    for (const Index v : {s.a, s.b, s.c, s.d})
+        if (v != none) __builtin_prefetch(&places_[v]);
 }
 
 SplitSide Progressive::ends(Index vertex) const {

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "planet/bisection/bisection.h"
+#include "planet/bisection/huge_pages.h"
 #include "planet/mesh/morph.h"
 
 namespace planet {
@@ -55,6 +56,9 @@ class Progressive {
     /// The vertex that a record makes. @param place or, if not given, the midpoint
     /// @return false, and nothing changes, for a record that does not fit those before it
     bool append(const SplitRecord& record, const glm::dvec3* place = nullptr);
+    /// Fetch into the cache what a record will need, some records ahead: first its parents, then the ends of its side.
+    void prefetch_parents(const SplitRecord& record) const;
+    void prefetch_ends(const SplitRecord& record) const;
     /// Puts the vertex of the last record where it belongs.
     void move_last(const glm::dvec3& place) { places_.back() = place; }
     void reserve(std::size_t splits);
@@ -133,9 +137,9 @@ class Progressive {
     BisectionRule rule_;
     SideGeometry sides_;
     std::string note_;
-    std::vector<glm::dvec3> places_;  ///< by vertex
-    std::vector<Split> splits_;       ///< by vertex of the refinement
-    std::vector<Index> splitter_;     ///< by name
+    LargeArray<glm::dvec3> places_;  ///< by vertex
+    LargeArray<Split> splits_;       ///< by vertex of the refinement
+    LargeArray<Index> splitter_;     ///< by name
 };
 
 /// A conforming mesh between the base and the whole: a set of vertices closed under dependencies.

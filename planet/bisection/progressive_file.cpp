@@ -291,6 +291,8 @@ class Decoder {
         ByteReader places(payload.subspan((bits.bits_taken() + 7) / 8));
         const Index stop = std::min(count, wanted - begin);
         for (Index i = 0; i < stop; ++i) {
+            if (i + 16 < stop) mesh.prefetch_parents(records[i + 16]);
+            if (i + 8 < stop) mesh.prefetch_ends(records[i + 8]);
             if (!mesh.append(records[i])) damaged(" do not fit each other");
             if (header_.places != Places::midpoints) mesh.move_last(place(mesh.places().back(), places));
         }

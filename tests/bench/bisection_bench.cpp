@@ -52,7 +52,7 @@ void longest_first(benchmark::State& state, BisectionRule rule) {
         splits = mesh.refine(goal).splits;
         state.PauseTiming();
         triangles = mesh.triangle_count();
-        bytes = mesh.report().bytes;
+        bytes = mesh.bytes();
         state.ResumeTiming();
     }
     set_counters(state, splits, triangles);
