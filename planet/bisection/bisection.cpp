@@ -129,8 +129,13 @@ std::size_t Bisection::step(const std::function<bool(const TrianglePlaces&)>& re
         return x != y ? x > y : a.leaf < b.leaf;
     });
     std::size_t count = 0;
-    for (const Now& now : leaves)
-        if (mesh[now.leaf].name == now.name && mesh[now.leaf].kind == now.kind) count += split(now.leaf);
+    for (const Now& now : leaves) {
+        const auto unchanged = [&] { return mesh[now.leaf].name == now.name && mesh[now.leaf].kind == now.kind; };
+        if (unchanged()) count += split(now.leaf);
+        // A quarter that gave way to A'B' still has the middle of its longest side to come: it is that of A'B'.
+        const bool gave_way = now.kind == LeafKind::quarter && mesh[now.leaf].name == now.name && !unchanged();
+        if (gave_way) count += split(now.leaf);
+    }
     return count;
 }
 

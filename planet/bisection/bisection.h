@@ -143,7 +143,8 @@ class Bisection {
     std::size_t split(Index triangle);
     /// Splits any side. Of a quarter, C'C may give way to A'B' instead.
     std::size_t split_side(LeafSide side);
-    /// One uniform step: every leaf (in the region, if given) is split at least once.
+    /// One uniform step: the middle of the longest side of every leaf (in the region, if given) becomes a vertex. After two steps
+    /// both rules have the same vertices.
     std::size_t step(const std::function<bool(const TrianglePlaces&)>& region = {});
     /// Throws Error(bad_usage) for a goal without or with senseless limits.
     RefineResult refine(const RefineGoal& goal);

@@ -117,7 +117,7 @@ class LengthQueue {
     std::vector<Entry> sorted_;                ///< the longest first
     std::size_t next_ = 0;
     std::array<std::size_t, 3> fetched_{};  ///< leaves of the sorted ones for which each prefetch was done
-    std::vector<Entry> late_;  ///< a heap: those that came when their bucket was sorted already
+    std::vector<Entry> late_;               ///< a heap: those that came when their bucket was sorted already
 };
 
 }  // namespace planet
