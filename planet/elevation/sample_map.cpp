@@ -134,22 +134,41 @@ void SampleMap::RowsInArea::add(const glm::dvec3& side, double least) {
     const auto columns = static_cast<std::size_t>(columns_);
     for (std::size_t i = 0; i < columns; ++i) along[i] = meridian[i].x * side.x + meridian[i].y * side.y;
     bound.most_along = *std::max_element(along, along + columns);
+    for (std::size_t i = 1; i < columns; ++i) {
+        bound.rises &= along[i - 1] <= along[i];
+        bound.falls &= along[i - 1] >= along[i];
+    }
 }
 
 std::pair<int, int> SampleMap::RowsInArea::find(int row) const {
-    int first = 0, last = columns_;
-    if (bound_count_ == 0) return {first, last};
+    std::pair<int, int> found{0, columns_};
+    if (bound_count_ == 0) return found;
     const glm::dvec2 parallel = map_.parallels_[static_cast<std::size_t>(row)];
     const auto bounds = std::span(bounds_).first(bound_count_);
     for (const Bound& bound : bounds)
         if (parallel.x * bound.most_along < bound.least - parallel.y * bound.side.z) return {0, 0};
     for (const Bound& bound : bounds) {
-        const double* const along = along_.data() + bound.first;
-        const double rest = bound.least - parallel.y * bound.side.z;
-        while (first < last && parallel.x * along[first] < rest) ++first;
-        while (last > first && parallel.x * along[last - 1] < rest) --last;
+        const auto [first, last] = find(bound, parallel);
+        found = {std::max(found.first, first), std::min(found.second, last)};
     }
-    return {first, last};
+    return found.first < found.second ? found : std::pair(0, 0);
+}
+
+// Nearly always the meridians' parts rise or fall along a row: then it is enough to count.
+std::pair<int, int> SampleMap::RowsInArea::find(const Bound& bound, const glm::dvec2& parallel) const {
+    const double* const along = along_.data() + bound.first;
+    const double rest = bound.least - parallel.y * bound.side.z;
+    const auto columns = static_cast<std::size_t>(columns_);
+    if (bound.rises || bound.falls) {
+        std::int64_t outside = 0;
+        for (std::size_t i = 0; i < columns; ++i) outside += parallel.x * along[i] < rest ? 1 : 0;
+        const int count = static_cast<int>(outside);
+        return bound.rises ? std::pair(count, columns_) : std::pair(0, columns_ - count);
+    }
+    std::size_t first = 0, last = columns;
+    while (first < last && parallel.x * along[first] < rest) ++first;
+    while (last > first && parallel.x * along[last - 1] < rest) --last;
+    return {static_cast<int>(first), static_cast<int>(last)};
 }
 
 void SampleMap::project_exactly(std::span<const glm::dvec3> normals, std::span<glm::dvec3> samples) const {

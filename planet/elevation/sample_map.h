@@ -3,7 +3,6 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -49,9 +48,11 @@ class SampleMap {
         struct Bound {
             glm::dvec3 side;
             double least;
-            double most_along = -std::numeric_limits<double>::infinity();  // over the columns
-            std::size_t first = 0;                                         // in along_
+            std::size_t first = 0;            // in along_
+            double most_along = 0;            // over the columns
+            bool rises = true, falls = true;  // from column to column
         };
+        std::pair<int, int> find(const Bound& bound, const glm::dvec2& parallel) const;
         void add(const glm::dvec3& side, double least);
 
         const SampleMap& map_;
