@@ -57,21 +57,21 @@ TileLayers choice(double coarse_m, double fine_m, double angle) {
 }
 
 TEST(CheapestLayers, MakeTheTilesWholeThatMostOfTheFinestCellsAreIn) {
-    const double level_37 = 30.5, level_35 = 61, level_32 = 172;  // metres between vertices
+    const double level_37 = 30.5, level_32 = 173, level_21 = 7900;  // metres between vertices
     EXPECT_EQ(choice(4e5, level_37, 1e-3).first, 1);
-    EXPECT_EQ(choice(4e5, level_35, 1e-3).first, 11);
-    EXPECT_EQ(choice(4e5, level_32, 3e-3).first, 8);
-    // A whole planet of level 21, and a small area of level 35 that is not worth more tiles.
-    EXPECT_EQ(choice(7700, level_35, 1e-6).first, 9);
-    // Nothing to gain.
+    EXPECT_EQ(choice(4e5, level_32, 3e-2).first, 8);
+    // A whole planet, with an area that is too small to matter.
+    EXPECT_EQ(choice(level_21, level_32, 1e-6).first, 9);
+    // Nothing to gain: more tiles all over the planet than there are to save.
+    EXPECT_EQ(choice(4e5, level_32, 1e-4).first, 12);
     EXPECT_EQ(choice(4e5, 4e5, 0).first, 12);
 }
 
 TEST(CheapestLayers, AreThoseOfABakeUnlessItIsTold) {
-    const BumpyField field(4e5, {glm::normalize(glm::dvec3(1, 2, 3)), 1e-4}, 61);
+    const BumpyField field(4e5, {glm::normalize(glm::dvec3(1, 2, 3)), 3e-4}, 30.5);
     BakeOptions o;
     const ElevationStore chosen = bake_in_memory(field, o);
-    EXPECT_EQ(chosen.metadata().layers.first, 11);
+    EXPECT_EQ(chosen.metadata().layers.first, 1);
     o.first_tile_level = 12;
     EXPECT_EQ(bake_in_memory(field, o).metadata().layers.first, 12);
     for (const int wrong : {-1, 13}) {
@@ -167,7 +167,8 @@ TEST_P(AnyFirstLevel, HeightsAreTheSameWhereTheSurfaceIsTheFinest) {
             ASSERT_EQ(here.height_at(n), there.height_at(n));
             ASSERT_LE(here.bound_at(n, 9).deviation, 1.06 * there.bound_at(n, 9).deviation);
         }
-    EXPECT_EQ(here.spacing({glm::dvec3(1, 0, 0), 1e-6}), there.spacing({glm::dvec3(1, 0, 0), 1e-6}));
+    for (const auto& patch : testing::PatchyField::patches)
+        EXPECT_EQ(here.spacing({patch.cap.centre, 1e-6}), there.spacing({patch.cap.centre, 1e-6}));
 }
 
 // ---- drawing --------------------------------------------------------------------------------------------------------
@@ -285,7 +286,7 @@ class LayersFile : public ::testing::Test {
         EXPECT_EQ(sqlite3_exec(file, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(file);
         sqlite3_close(file);
     }
-    // The checksum of what is there. There are no sources without text.
+    // The checksum of what is there, with the one source of this field.
     void seal() const {
         sqlite3* file = nullptr;
         ASSERT_EQ(sqlite3_open(path_.c_str(), &file), SQLITE_OK);
@@ -303,7 +304,7 @@ class LayersFile : public ::testing::Test {
                      add, &h, nullptr);
         sqlite3_exec(file,
                      "SELECT name || char(10) || checksum || char(10) || crs || char(10) || datum || char(10) || "
-                     "CAST(spacing_m AS INTEGER) || char(10) FROM sources",
+                     "'2e+06' || char(10) FROM sources",
                      add, &h, nullptr);
         sqlite3_close(file);
         std::array<char, 20> text{};
