@@ -31,6 +31,14 @@ enum class Overlay : std::uint32_t {
     curve = 4,   ///< the Sierpinski curve through the triangles
 };
 
+/// As --show names them.
+struct OverlayName {
+    std::string_view name;
+    Overlay overlay;
+};
+inline constexpr OverlayName overlay_names[] = {
+    {"mesh", Overlay::mesh}, {"levels", Overlay::levels}, {"curve", Overlay::curve}};
+
 struct RenderOptions {
     /// The place the picture is about, h = 0. What "ground" means below is the drawn surface there: the terrain with
     /// its exaggeration, or the sea. Default: the middle of the land hemisphere's southern half, which shows Africa,
@@ -79,6 +87,12 @@ struct RenderOptions {
 /// Adds --elevation and --elevation-datum. What the options are put into must live as long as the parser. Values are
 /// checked while parsing (planet::Error, bad_usage).
 void add_elevation_options(CLI::App& command, EarthSources& sources);
+
+/// Adds --at to --time.
+void add_view_options(CLI::App& command, RenderOptions& options);
+
+/// Adds what is drawn and how well, and the sources: all the others but --output and --json.
+void add_look_options(CLI::App& command, RenderOptions& options);
 
 /// Adds all options of a picture but --json.
 void add_picture_options(CLI::App& command, RenderOptions& options);
