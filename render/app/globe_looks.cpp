@@ -16,6 +16,15 @@ constexpr double highest_ground_m = 9000;
 
 }  // namespace
 
+OverlayPass::Show overlays_of(const RenderOptions& o) {
+    return {.mesh = o.shows(Overlay::mesh),
+            .levels = o.shows(Overlay::levels),
+            .curve = o.shows(Overlay::curve),
+            .segments = o.shows(Overlay::segments),
+            .deviations = o.shows(Overlay::deviations),
+            .graticule = o.shows(Overlay::graticule)};
+}
+
 void GlobeLooks::upload(const Imagery& imagery) {
     day_ = upload_cube(imagery.day, GL_SRGB8_ALPHA8);
     night_ = upload_cube(imagery.night, GL_SRGB8_ALPHA8);

@@ -8,12 +8,16 @@
 
 #include "planet/geodesy/utc_time.h"
 #include "render/app/imagery.h"
+#include "render/app/render_options.h"
 #include "render/gl/texture.h"
 #include "render/passes/overlay.h"
 #include "render/passes/sky.h"
 #include "render/passes/terrain.h"
 
 namespace render {
+
+/// What of the overlays in the options is to be drawn.
+OverlayPass::Show overlays_of(const RenderOptions& options);
 
 class GlobeLooks {
   public:

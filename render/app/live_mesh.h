@@ -37,6 +37,7 @@ class LiveMesh {
     void place_anew();
 
     const planet::Segments& segments() const { return segments_; }
+    const planet::TileSource& tiles() const { return tiles_; }
     const PatchCache& patches() const { return patches_; }
     /// K if vertices morph, else 0: only where the budget leaves more than a pixel of deviation.
     double morph_reach() const { return view_.morph ? view_.test.K : 0; }

@@ -97,12 +97,7 @@ class Painter {
         steps_.time("textures", [&] { looks_.upload(imagery); });
         const std::vector<Star> stars = steps_.time("stars", [] { return read_stars(data_file("stars.csv")); });
         const auto noise = noise_.get();
-        steps_.time("shaders", [&] {
-            looks_.link(stars, noise,
-                        {.mesh = options_.shows(Overlay::mesh),
-                         .levels = options_.shows(Overlay::levels),
-                         .curve = options_.shows(Overlay::curve)});
-        });
+        steps_.time("shaders", [&] { looks_.link(stars, noise, overlays_of(options_)); });
         const auto [tables, view] = air.get();
         looks_.set_sky(tables, view, options_.time);
         set_reversed_depth();
@@ -120,7 +115,7 @@ class Painter {
         begin_mesh(i + 1);
         steps_.time("upload", [&] {
             looks_.terrain().upload(segments, mesh.patches.layers());
-            looks_.overlay().upload(segments);
+            looks_.overlay().upload(segments, mesher_.tiles());
             patch_texture_ = mesh.patches.upload();
         });
         report_.triangles += segments.leaf_count();

@@ -77,7 +77,7 @@ void add_drawing_options(CLI::App& command, RenderOptions& o) {
               [&](Where where, const std::string& text) {
                   o.memory_bytes = parse_memory(where, text, std::size_t{1} << 20, std::size_t{1} << 40);
               });
-    add_value(command, "--show", "LIST", "Draw on top: mesh,levels,curve",
+    add_value(command, "--show", "LIST", "Draw on top: mesh,levels,curve,segments,deviations,graticule",
               [&](Where where, const std::string& text) { o.show = overlays_from_text(where, text); });
     add_value(command, "--samples", "COUNT", "Samples a pixel: 1, 2, 4, 8 [4 near the ground, 1 from afar]",
               [&](Where where, const std::string& text) {

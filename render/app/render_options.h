@@ -26,9 +26,12 @@ namespace render {
 
 /// What --show adds to a picture. The bits of RenderOptions::show.
 enum class Overlay : std::uint32_t {
-    mesh = 1,    ///< the sides of the triangles
-    levels = 2,  ///< a colour for each level
-    curve = 4,   ///< the Sierpinski curve through the triangles
+    mesh = 1,         ///< the sides of the triangles
+    levels = 2,       ///< a colour for each level
+    curve = 4,        ///< the Sierpinski curve through the triangles
+    segments = 8,     ///< a colour for each segment: what is drawn and kept as one
+    deviations = 16,  ///< a colour for how far a triangle is at most from the finest surface
+    graticule = 32,   ///< parallels and meridians
 };
 
 /// As --show names them.
@@ -37,7 +40,8 @@ struct OverlayName {
     Overlay overlay;
 };
 inline constexpr OverlayName overlay_names[] = {
-    {"mesh", Overlay::mesh}, {"levels", Overlay::levels}, {"curve", Overlay::curve}};
+    {"mesh", Overlay::mesh},         {"levels", Overlay::levels},         {"curve", Overlay::curve},
+    {"segments", Overlay::segments}, {"deviations", Overlay::deviations}, {"graticule", Overlay::graticule}};
 
 struct RenderOptions {
     /// The place the picture is about, h = 0. What "ground" means below is the drawn surface there: the terrain with

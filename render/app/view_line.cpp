@@ -74,7 +74,7 @@ RenderOptions options_of_pose(const RenderOptions& options, const DrawnSurface& 
     const double ground = surface.ground(planet::normal_from_geodetic(o.at.latitude, o.at.longitude));
     o.height = std::max(rounded(pose.h - ground, decimals_for(step_m)), 0.1);
     o.range.reset();
-    o.heading = std::min(rounded(pose.heading / degrees, turn), 360.0) * degrees;
+    o.heading = std::fmod(rounded(pose.heading / degrees, turn), 360.0) * degrees;
     o.pitch = std::clamp(rounded(pose.pitch / degrees, turn), -90.0, 90.0) * degrees;
     return o;
 }

@@ -111,7 +111,7 @@ bool ViewerSession::load() {
 
 void ViewerSession::begin() {
     looks_.upload(data_.imagery);
-    looks_.link(data_.stars, data_.noise, {});
+    looks_.link(data_.stars, data_.noise, overlays_of(render_));
     const Limits& limits = stage_.context.limits();
     mesh_.emplace(render_, *data_.surface, std::min<std::size_t>(2048, static_cast<std::size_t>(limits.array_layers)));
     pace_.emplace(is_software(stage_.context.gl_renderer()), render_.max_triangles.value_or(~std::size_t{0}));
@@ -129,7 +129,6 @@ void ViewerSession::begin() {
         else
             static_cast<void>(window_.wait(0.005));
     }
-    looks_.set_overlay({render_.shows(Overlay::mesh), render_.shows(Overlay::levels), render_.shows(Overlay::curve)});
     last_step_ = last_swap_ = window_.seconds();
     moved_at_ = last_step_ - 1;
     report_.gl_version = stage_.context.gl_version();
@@ -221,14 +220,14 @@ void ViewerSession::update_globe() {
     const bool patches_changed = mesh_->update_patches(mesh_changed_, resting_ ? 4 * patches_a_frame : patches_a_frame);
     if (mesh_changed_ || patches_changed || look_changed_) {
         looks_.terrain().upload(mesh_->segments(), mesh_->patches().layers());
-        looks_.overlay().upload(mesh_->segments());
+        looks_.overlay().upload(mesh_->segments(), mesh_->tiles());
         mesh_changed_ = true;
     }
     if (auto table = air_.update(camera.eye, render_.time)) {
         looks_.set_sky(air_.tables(), *std::move(table), render_.time);
         air_changed_ = true;
     }
-    update_seconds_.push_back(1000 * mesh_->update_seconds());
+    if (!resting_) update_seconds_.push_back(1000 * mesh_->update_seconds());
     if (automatic()) all_update_seconds_.push_back(mesh_->update_seconds());
 }
 
@@ -245,6 +244,7 @@ void ViewerSession::draw() {
     if (!resting_) {
         const double seconds = frame_.draw_moving(looks_, frame, pace_->scale());
         pace_->after_frame(seconds);
+        frame_seconds_.push_back(1000 * seconds);
         picture_new_ = true;
     } else if (complete && (!frame_.settled() || changed)) {
         if (changed || !started_still_) {
@@ -277,7 +277,6 @@ void ViewerSession::present() {
     window_.swap();
     count_errors();
     const double now = window_.seconds();
-    frame_seconds_.push_back(1000 * (now - last_swap_));
     if (automatic()) all_frame_seconds_.push_back(now - last_swap_);
     last_swap_ = now;
     for (auto* list : {&frame_seconds_, &update_seconds_})
@@ -332,6 +331,14 @@ void ViewerSession::save_picture() {
     notice("Saved " + name);
 }
 
+void ViewerSession::toggle_frozen() {
+    if (frozen_)
+        frozen_.reset();
+    else
+        frozen_ = camera_.culling({0, 0, camera_.width, camera_.height}, data_.surface->occluder_radius());
+    look_changed_ = true;
+}
+
 void ViewerSession::copy_view() {
     const std::string line =
         render_line(resting_.value_or(options_of_pose(render_, *data_.surface, navigator_->pose())));
@@ -353,8 +360,13 @@ void ViewerSession::set_exaggeration(double factor) {
 }
 
 void ViewerSession::toggle(Overlay overlay) {
-    render_.show ^= static_cast<std::uint32_t>(overlay);
-    looks_.set_overlay({render_.shows(Overlay::mesh), render_.shows(Overlay::levels), render_.shows(Overlay::curve)});
+    // A triangle has one colour.
+    constexpr auto colors = static_cast<std::uint32_t>(Overlay::levels) |
+                            static_cast<std::uint32_t>(Overlay::segments) |
+                            static_cast<std::uint32_t>(Overlay::deviations);
+    const auto bit = static_cast<std::uint32_t>(overlay);
+    render_.show = (bit & colors) != 0 ? (render_.show & (~colors | bit)) ^ bit : render_.show ^ bit;
+    looks_.set_overlay(overlays_of(render_));
     look_changed_ = true;
 }
 
@@ -461,17 +473,16 @@ void ViewerSession::act(Action action) {
             toggle(Overlay::curve);
             break;
         case freeze_culling:
-            if (frozen_)
-                frozen_.reset();
-            else
-                frozen_ = camera_.culling({0, 0, camera_.width, camera_.height}, data_.surface->occluder_radius());
-            look_changed_ = true;
+            toggle_frozen();
             break;
         case show_graticule:
-            graticule_ = !graticule_;
+            toggle(Overlay::graticule);
             break;
         case show_segments:
+            toggle(Overlay::segments);
+            break;
         case show_deviations:
+            toggle(Overlay::deviations);
             break;
     }
 }

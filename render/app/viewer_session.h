@@ -53,6 +53,7 @@ class ViewerSession {
     void set_time(planet::UtcTime time);
     void set_exaggeration(double factor);
     void toggle(Overlay overlay);
+    void toggle_frozen();
     void copy_view();
     void save_picture();
     void go_to_typed();
@@ -64,6 +65,7 @@ class ViewerSession {
     void fill_status();
     void fill_labels();
     void fill_statistics();
+    void fill_settings();
     void take_panel_changes();
     void notice(std::string text);
 
@@ -94,7 +96,6 @@ class ViewerSession {
 
     glm::dvec2 cursor_{-1};
     PlaceFormat place_format_ = PlaceFormat::degrees;
-    bool graticule_ = false;
     std::vector<Sight> places_;  ///< to go back to
     double noticed_at_ = -1e9;
     bool leaving_ = false, save_next_ = false, input_ = true;

@@ -178,7 +178,8 @@ Held turn_to(const Pose& pose, const Lens& lens, const glm::dvec3& direction, co
 
 double highest_pitch(double h) {
     constexpr double free_below_m = 1e5, held_above_m = 2e6;
-    const double planet_angle = std::asin(wgs84.b / (wgs84.b + std::max(h, 0.0)));  // from straight down to the limb
+    // From straight down nearly to the limb.
+    const double planet_angle = 0.9 * std::asin(wgs84.b / (wgs84.b + std::max(h, 0.0)));
     const double t =
         std::clamp(std::log(std::max(h, 1.0) / free_below_m) / std::log(held_above_m / free_below_m), 0.0, 1.0);
     const double from_down = std::lerp(179 * planet::degrees, planet_angle, t * t * (3 - 2 * t));
@@ -209,16 +210,27 @@ Pose zoomed(const Pose& pose, const Lens& lens, const glm::dvec3& point, const g
 
 Pose orbited(const Pose& pose, const Lens& lens, const glm::dvec3& point, const glm::dvec2& pixel, double turn,
              double tilt) {
-    const double up_to = std::max(highest_pitch(pose.h), pose.pitch);
-    const double bounded = std::clamp(pose.pitch + tilt, -0.5 * pi, std::min(up_to, 89 * planet::degrees)) - pose.pitch;
+    const double up_to = std::min(std::max(highest_pitch(pose.h), pose.pitch), 89 * planet::degrees);
+    const double bounded = std::clamp(pose.pitch + tilt, -0.5 * pi, up_to) - pose.pitch;
     const Axes axes = axes_of(pose);
-    const glm::dvec3 pole = planet::normal_from_ecef(wgs84, point);
+    const glm::dvec3 pole = planet::normal_from_ecef(wgs84, point), back = pose.eye() - point;
     const auto rotate = [&](const glm::dvec3& v) { return rotated(rotated(v, axes.right, bounded), pole, -turn); };
-    const glm::dvec3 eye = point + rotate(pose.eye() - point);
-    Pose to = pose_from(eye, rotate(axes.ahead), rotate(axes.up));
-    to.pitch = std::min(to.pitch, 89 * planet::degrees);
-    const Held held = turn_to(to, lens, point - to.eye(), pixel);
-    return held.exact ? held.pose : to;
+    Pose to = pose_from(point + rotate(back), rotate(axes.ahead), rotate(axes.up));
+    if (pose.pitch > -60 * planet::degrees) {
+        to.pitch = std::min(to.pitch, 89 * planet::degrees);
+        const Held held = turn_to(to, lens, point - to.eye(), pixel);
+        if (held.exact) return held.pose;
+    }
+    // Near straight down, the least tilt aside would become any heading: the angles are set, and the eye follows.
+    to.heading = wrapped(pose.heading + turn);
+    to.pitch = pose.pitch + bounded;
+    for (int i = 0; i < 3; ++i) {
+        to = hold(to, lens, point, pixel, Compass::kept).pose;
+        const double ratio = glm::length(back) / glm::distance(to.eye(), point);
+        if (std::abs(ratio - 1) < 1e-9) break;
+        to.h = planet::height_from_ecef(wgs84, point + ratio * (to.eye() - point)).m;
+    }
+    return hold(to, lens, point, pixel, Compass::kept).pose;
 }
 
 Pose lifted(Pose pose, double floor_h) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "render/viewer/module/fonts.h"
 
@@ -193,7 +194,10 @@ void PanelDrawing::draw_notice(const Panels& panels) {
         list.AddRectFilled(left, right, line, unit(2));
         list.AddRectFilled(left, {left.x + (right.x - left.x) * std::min(part, 1.0f), right.y}, accent, unit(2));
     };
-    if (!panels.notice.empty()) box(panels.notice, unit(16), panels.notice_fade, -1);
+    if (!panels.notice.empty()) {
+        const ImVec2 extent = ImGui::CalcTextSize(panels.notice.c_str(), nullptr, false, size.x - unit(96));
+        box(panels.notice, size.y - unit(32 + 48 + 16) - extent.y, panels.notice_fade, -1);
+    }
     if (!panels.progress.empty()) box(panels.progress, 0.5f * size.y - unit(24), 1, panels.progress_part);
 }
 
@@ -224,21 +228,23 @@ void PanelDrawing::draw_help(Panels& panels) {
     for (const HelpGroup& g : panels.help_groups) lines += g.lines.size() + 2;
     const auto column = [&](std::size_t from, std::size_t to) {
         ImGui::BeginGroup();
+        const float left = ImGui::GetCursorPosX();
         for (std::size_t i = from; i < to; ++i) {
             const HelpGroup& g = panels.help_groups[i];
             ImGui::Dummy({0, unit(4)});
             ImGui::TextColored(color(accent), "%s", g.title.c_str());
             for (const HelpLine& l : g.lines) {
                 ImGui::TextUnformatted(l.keys.c_str());
-                ImGui::SameLine(ImGui::GetCursorStartPos().x + 0);
-                ImGui::SetCursorPosX(ImGui::GetCursorPosX() + unit(152));
+                ImGui::SameLine(0, 0);
+                ImGui::SetCursorPosX(left + unit(136));
                 ImGui::TextDisabled("%s", l.what.c_str());
             }
         }
         ImGui::EndGroup();
     };
     std::size_t split = 0;
-    while (split < panels.help_groups.size() && half < lines / 2) half += panels.help_groups[split++].lines.size() + 2;
+    while (split < panels.help_groups.size() && half + panels.help_groups[split].lines.size() / 2 < lines / 2)
+        half += panels.help_groups[split++].lines.size() + 2;
     column(0, split);
     ImGui::SameLine(0, unit(40));
     column(split, panels.help_groups.size());
@@ -248,17 +254,22 @@ void PanelDrawing::draw_help(Panels& panels) {
 void PanelDrawing::draw_settings(Panels& panels) {
     begin_panel("View", unit(16), unit(16), 0, 0, unit(304));
     ImGui::TextDisabled("%s", panels.time_text.c_str());
-    const auto slider = [&](const char* name, const char* id, float& value, float low, float high, const char* format,
-                            ImGuiSliderFlags flags = 0) {
-        ImGui::AlignTextToFramePadding();
+    // The value beside the name, so that the grab hides no digit.
+    const auto slider = [&](const char* name, const char* id, float& value, float low, float high, const char* format) {
         ImGui::TextUnformatted(name);
-        ImGui::SameLine(unit(112));
+        char text[32];
+        std::snprintf(text, sizeof text, format, static_cast<double>(value));
+        ImGui::SameLine(unit(288) - ImGui::CalcTextSize(text).x);
+        ImGui::TextDisabled("%s", text);
+        ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(unit(8), 0));
         ImGui::SetNextItemWidth(-1);
-        return ImGui::SliderFloat(id, &value, low, high, format, flags);
+        const bool changed = ImGui::SliderFloat(id, &value, low, high, "", ImGuiSliderFlags_NoInput);
+        ImGui::PopStyleVar();
+        return changed;
     };
     panels.time_changed |= slider("Hour, UTC", "##hour", panels.day_hours, 0, 24, "%.2f");
     panels.time_changed |= slider("Day of year", "##day", panels.year_day, 1, 366, "%.0f");
-    panels.exaggeration_changed |= slider("Heights", "##heights", panels.exaggeration, 0, 10, "%.1f times");
+    panels.exaggeration_changed |= slider("Heights", "##heights", panels.exaggeration, 0, 10, "%.1f \xc3\x97");
     const auto switches = [&](const char* title, std::vector<Switch>& list) {
         if (list.empty()) return;
         ImGui::Dummy({0, unit(4)});
