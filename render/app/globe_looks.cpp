@@ -52,7 +52,7 @@ bool GlobeLooks::from_afar(const Camera& camera, double exaggeration) const {
     return !needs_close_up(air_, std::max(clearance, 0.0), pixel_angle);
 }
 
-void GlobeLooks::draw(const Frame& frame) {
+void GlobeLooks::draw_opaque(const Frame& frame) {
     sky_->bind(frame.camera, frame.part);
     day_.bind(4);
     night_.bind(5);
@@ -65,8 +65,13 @@ void GlobeLooks::draw(const Frame& frame) {
                     .patch_range = patch_range,
                     .from_afar = from_afar(frame.camera, frame.exaggeration),
                     .morph_reach = frame.morph_reach});
+    sky_->draw_air(frame.camera, frame.part);
+}
+
+void GlobeLooks::draw_blended(const Frame& frame) {
+    sky_->bind(frame.camera, frame.part);
     overlay_->draw(frame.camera, frame.part);
-    sky_->draw(frame.camera, frame.part);
+    sky_->draw_stars(frame.camera, frame.part);
 }
 
 }  // namespace render

@@ -39,7 +39,13 @@ class GlobeLooks {
         double morph_reach = 0;  ///< see TerrainLook
     };
     /// Draws the meshes of terrain() and overlay() into what is bound.
-    void draw(const Frame& frame);
+    void draw(const Frame& frame) {
+        draw_opaque(frame);
+        draw_blended(frame);
+    }
+    /// Ground and sky, as often over each other as may be; then, once, what blends over them.
+    void draw_opaque(const Frame& frame);
+    void draw_blended(const Frame& frame);
 
     TerrainPass& terrain() { return *terrain_; }
     OverlayPass& overlay() { return *overlay_; }

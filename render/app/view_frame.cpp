@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace render {
 
@@ -33,7 +34,7 @@ Camera scaled(Camera camera, double scale) {
 
 double ViewFrame::draw_moving(GlobeLooks& looks, const GlobeLooks::Frame& frame, double scale) {
     const auto start = Clock::now();
-    settled_ = false;
+    settled_ = still_shown_ = false;
     const Camera camera = scaled(frame.camera, scale);
     make_target(moving_, camera.width, camera.height, 1);
     moving_.bind();
@@ -46,27 +47,33 @@ double ViewFrame::draw_moving(GlobeLooks& looks, const GlobeLooks::Frame& frame,
 void ViewFrame::begin_settled(int samples) {
     samples_ = samples;
     rows_done_ = 0;
+    settled_ = false;
 }
 
 bool ViewFrame::draw_settled(GlobeLooks& looks, const GlobeLooks::Frame& frame, double seconds) {
     const auto start = Clock::now();
     const int width = frame.camera.width, height = frame.camera.height;
-    make_target(still_, width, height, samples_);
-    still_.bind();
+    make_target(next_, width, height, samples_);
+    next_.bind();
     gl().Enable(GL_SCISSOR_TEST);
     while (rows_done_ < height && (rows_done_ == 0 || seconds_since(start) < seconds)) {
         const int rows = std::min(rows_at_once_ > 0 ? rows_at_once_ : 32, height - rows_done_);
         const auto band = Clock::now();
         gl().Scissor(0, rows_done_, width, rows);
-        still_.clear(0, 0, 0, 1);
-        looks.draw(frame);
+        next_.clear(0, 0, 0, 1);
+        looks.draw_opaque(frame);
         gl().Finish();
         const double each = seconds_since(band) / rows;
         rows_at_once_ = std::clamp(static_cast<int>(0.5 * seconds / std::max(each, 1e-9)), 8, height);
         rows_done_ += rows;
     }
     gl().Disable(GL_SCISSOR_TEST);
-    settled_ = rows_done_ >= height;
+    // At once: with several samples a pixel llvmpipe draws a row beyond the scissor, and rows would blend twice.
+    if (rows_done_ >= height && !settled_) {
+        looks.draw_blended(frame);
+        std::swap(still_, next_);
+        settled_ = still_shown_ = true;
+    }
     return settled_;
 }
 

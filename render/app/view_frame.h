@@ -31,13 +31,13 @@ class ViewFrame {
     int height() const { return shown().height(); }
 
   private:
-    const Framebuffer& shown() const { return settled_ ? still_ : moving_; }
+    const Framebuffer& shown() const { return still_shown_ ? still_ : moving_; }
 
-    Framebuffer moving_, still_;
+    Framebuffer moving_, still_, next_;  ///< next_: the settled picture while it is not whole
     int samples_ = 1;
     int rows_done_ = 0;
     int rows_at_once_ = 0;  ///< as measured; 0: not yet
-    bool settled_ = false;
+    bool settled_ = false, still_shown_ = false;
 };
 
 }  // namespace render

@@ -139,9 +139,13 @@ void ViewerSession::fill_labels() {
         if (std::abs(latitude) > 89 * degrees) return;
         const glm::dvec3 normal = planet::normal_from_geodetic(latitude, longitude);
         const glm::dvec3 point = planet::ecef_from_normal(wgs84, normal, {data_.surface->ground(normal)});
-        if (glm::dot(pose.eye() - point, normal) <= 0) return;
+        // Not at the limb, where lines are foreshortened, and not over each other.
+        if (glm::dot(glm::normalize(pose.eye() - point), normal) < 0.25) return;
         const auto at = pixel_of_point(pose, lens, point);
         if (!at || at->x < 0 || at->y < 0 || at->x > lens.width - 80 || at->y > lens.height - 56) return;
+        for (const Label& l : panels_.labels)
+            if (std::abs(static_cast<double>(l.x) - at->x) < 64 && std::abs(static_cast<double>(l.y) - at->y) < 24)
+                return;
         panels_.labels.push_back({static_cast<float>(at->x) + 6, static_cast<float>(at->y) - 10, std::move(text)});
     };
     for (int i = -12; i <= 12; ++i) {

@@ -31,9 +31,9 @@ double leaf_deviation(const planet::TileSource& tiles, const glm::dvec3& middle,
     return below < tile->depth ? std::abs(static_cast<double>(tile->split[local].deviation)) : 0;
 }
 
-/// 0..255 for 1/128 m to 16 km, by its logarithm.
+/// 0..255 for 1/4 m to 1 km, by its logarithm.
 std::uint32_t deviation_class(double metres) {
-    return static_cast<std::uint32_t>(std::clamp((std::log2(std::max(metres, 1e-6)) + 7) / 21, 0.0, 1.0) * 255);
+    return static_cast<std::uint32_t>(std::clamp((std::log2(std::max(metres, 1e-6)) + 2) / 12, 0.0, 1.0) * 255);
 }
 
 std::uint32_t segment_color(planet::LocationCode root) {

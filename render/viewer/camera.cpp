@@ -177,7 +177,7 @@ Held turn_to(const Pose& pose, const Lens& lens, const glm::dvec3& direction, co
 }
 
 double highest_pitch(double h) {
-    constexpr double free_below_m = 1e5, held_above_m = 2e6;
+    constexpr double free_below_m = 5e4, held_above_m = 5e5;
     // From straight down nearly to the limb.
     const double planet_angle = 0.9 * std::asin(wgs84.b / (wgs84.b + std::max(h, 0.0)));
     const double t =
@@ -202,10 +202,11 @@ Pose zoomed(const Pose& pose, const Lens& lens, const glm::dvec3& point, const g
     if (factor > 1) to.pitch = std::min(to.pitch, highest_pitch(to.h));
     // The ground is in its pixel again by a step aside; a peak that is level with the eye by a turn of the head.
     const double rise = glm::dot(glm::normalize(point - to.eye()), to.normal);
-    if (rise < -0.05)
-        if (const Held held = hold(to, lens, point, pixel, compass); held.exact) return held.pose;
+    const bool level = rise > -0.05;
+    const Held held = hold(to, lens, point, pixel, compass);
+    if (!level && (held.exact || factor > 1)) return held.pose;
     const Held turned = turn_to(to, lens, point - to.eye(), pixel);
-    return turned.exact || rise >= -0.05 ? turned.pose : hold(to, lens, point, pixel, compass).pose;
+    return turned.exact || level ? turned.pose : held.pose;
 }
 
 Pose orbited(const Pose& pose, const Lens& lens, const glm::dvec3& point, const glm::dvec2& pixel, double turn,
