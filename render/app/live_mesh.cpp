@@ -14,6 +14,9 @@ namespace {
 
 using planet::wgs84;
 
+/// A table takes a tenth of a second of processor time, and in less the air about a moving eye changes little.
+constexpr double least_air_interval_s = 0.2;
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -107,15 +110,17 @@ double LiveMesh::deviation_m() const {
     return std::max(segments_.deviation_max_m(), tiles_.residency().hidden_deviation_m);
 }
 
-std::optional<ViewTable> LiveAir::update(const glm::dvec3& eye, planet::UtcTime time) {
+std::optional<ViewTable> LiveAir::update(const glm::dvec3& eye, planet::UtcTime time, bool moving) {
     std::optional<ViewTable> ready;
     if (table_.valid() && table_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
         ready = table_.get();
         done_ = std::exchange(making_, std::nullopt);
     }
     const Key key{eye, time};
-    if (!making_ && done_ != key) {
+    const double since = seconds_since(begun_);
+    if (!making_ && done_ != key && (!moving || since > least_air_interval_s)) {
         making_ = key;
+        begun_ = std::chrono::steady_clock::now();
         table_ = std::async(std::launch::async, [this, key] {
             return make_view_table(tables_, key.eye, planet::sun_direction(key.time), threads_);
         });

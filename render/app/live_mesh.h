@@ -2,6 +2,7 @@
 // The mesh and the air of a moving view: what is there now is drawn now, and what is missing is asked for. At rest both
 // come to be, bit by bit, what a picture of the view has.
 
+#include <chrono>
 #include <future>
 #include <optional>
 
@@ -71,8 +72,9 @@ class LiveAir {
   public:
     explicit LiveAir(unsigned threads) : threads_(threads) {}
 
-    /// The table that has become ready, if any. Asks for the one given unless it is there or on its way.
-    std::optional<ViewTable> update(const glm::dvec3& eye, planet::UtcTime time);
+    /// The table that has become ready, if any. Asks for the one given unless it is there or on its way; while the eye
+    /// moves, only so often that processors have time for the rest.
+    std::optional<ViewTable> update(const glm::dvec3& eye, planet::UtcTime time, bool moving);
     /// Whether the last table handed out is for just these.
     bool is_for(const glm::dvec3& eye, planet::UtcTime time) const { return done_ == Key{eye, time}; }
     const AtmosphereTables& tables() const { return tables_; }
@@ -86,6 +88,7 @@ class LiveAir {
     unsigned threads_;
     AtmosphereTables tables_ = make_tables();
     std::optional<Key> done_, making_;
+    std::chrono::steady_clock::time_point begun_{};
     std::future<ViewTable> table_;  // last: uses tables_
 };
 

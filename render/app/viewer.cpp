@@ -124,7 +124,7 @@ void ViewerSession::begin() {
     // The air of the first frame is worth waiting for.
     camera_ = lens().camera(navigator_->pose());
     while (!air_.is_for(camera_.eye, render_.time)) {
-        if (auto table = air_.update(camera_.eye, render_.time))
+        if (auto table = air_.update(camera_.eye, render_.time, false))
             looks_.set_sky(air_.tables(), *std::move(table), render_.time);
         else
             static_cast<void>(window_.wait(0.005));
@@ -141,12 +141,17 @@ Lens ViewerSession::lens() const {
             render_.size.height};
 }
 
+/// How long there is nothing to do but to wait for the user. Other threads need the processor, too.
+double ViewerSession::patience() const {
+    if (!resting_ || worked_ || counts_frames() || save_next_) return 0;
+    const bool waits = !frame_.settled() || panels_.wants_frame || automatic() || window_.seconds() - noticed_at_ < 4;
+    return waits ? 0.016 : 0.5;
+}
+
 /// One turn of the loop; false when it is over.
 bool ViewerSession::step() {
-    const bool busy = !frame_.settled() || navigator_->moves() || panels_.wants_frame || automatic() ||
-                      window_.seconds() - noticed_at_ < 4;
+    const std::vector<InputEvent> events = window_.wait(patience());
     input_ = false;
-    const std::vector<InputEvent> events = window_.wait(busy ? 0 : 0.5);
     const double now = window_.seconds(), dt = std::min(now - last_step_, 0.1);
     last_step_ = now;
     if (window_.closed() || leaving_) return false;
@@ -190,7 +195,7 @@ Steering ViewerSession::steering() const {
 
 void ViewerSession::step_view(double dt) {
     navigator_->advance(dt, lens(), steering());
-    if (options_.turn != 0 && static_cast<int>(report_.frames) < options_.frames) {
+    if (options_.turn != 0 && counts_frames()) {
         const Sight sight = navigator_->sight(lens());
         Sight turned = sight;
         turned.heading += options_.turn;
@@ -223,12 +228,12 @@ void ViewerSession::update_globe() {
         looks_.overlay().upload(mesh_->segments(), mesh_->tiles());
         mesh_changed_ = true;
     }
-    if (auto table = air_.update(camera.eye, render_.time)) {
+    if (auto table = air_.update(camera.eye, render_.time, !resting_)) {
         looks_.set_sky(air_.tables(), *std::move(table), render_.time);
         air_changed_ = true;
     }
     if (!resting_) update_seconds_.push_back(1000 * mesh_->update_seconds());
-    if (automatic()) all_update_seconds_.push_back(mesh_->update_seconds());
+    if (counts_frames()) all_update_seconds_.push_back(mesh_->update_seconds());
 }
 
 void ViewerSession::draw() {
@@ -241,6 +246,7 @@ void ViewerSession::draw() {
                                   mesh_->morph_reach()};
     const bool complete = resting_ && mesh_->complete() && air_.is_for(camera.eye, render_.time);
     picture_new_ = false;
+    worked_ = true;
     if (!resting_) {
         const double seconds = frame_.draw_moving(looks_, frame, pace_->scale());
         pace_->after_frame(seconds);
@@ -260,13 +266,15 @@ void ViewerSession::draw() {
         started_still_ = false;
         last_preview_ = window_.seconds();
         picture_new_ = true;
+    } else {
+        worked_ = false;
     }
     mesh_changed_ = air_changed_ = look_changed_ = false;
 }
 
 void ViewerSession::present() {
-    if (!picture_new_ && !input_ && !panels_.wants_frame && !automatic() && window_.seconds() - noticed_at_ > 4 &&
-        window_.seconds() - last_swap_ < 0.5)
+    if (!picture_new_ && !input_ && !panels_.wants_frame && !counts_frames() && !save_next_ &&
+        window_.seconds() - noticed_at_ > 4 && window_.seconds() - last_swap_ < 0.5)
         return;
     gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl().Viewport(0, 0, window_.width(), window_.height());
@@ -274,10 +282,11 @@ void ViewerSession::present() {
     fill_panels();
     window_.draw_panels(panels_);
     if (save_next_) save_screenshot();
+    saved_ = std::exchange(save_next_, false);
     window_.swap();
     count_errors();
     const double now = window_.seconds();
-    if (automatic()) all_frame_seconds_.push_back(now - last_swap_);
+    if (counts_frames()) all_frame_seconds_.push_back(now - last_swap_);
     last_swap_ = now;
     for (auto* list : {&frame_seconds_, &update_seconds_})
         while (list->size() > 160) list->pop_front();
@@ -297,12 +306,9 @@ bool ViewerSession::finish_when_done() {
     const bool frames_done = options_.frames == 0 || report_.frames >= static_cast<std::uint64_t>(options_.frames);
     const bool settled = resting_ && frame_.settled() && !navigator_->moves();
     if (!automatic() || !frames_done) return false;
-    if (!options_.screenshot.empty()) {
-        if (!settled) return false;
-        if (!save_next_) {  // the panels as they are with the settled picture
-            save_next_ = true;
-            return false;
-        }
+    if (!options_.screenshot.empty() && !saved_) {
+        save_next_ = settled;  // with the panels of the settled picture, in the next frame
+        return false;
     }
     report_.settled = settled;
     return true;

@@ -58,6 +58,9 @@ class ViewerSession {
     void save_picture();
     void go_to_typed();
     Lens lens() const;
+    double patience() const;
+    /// Whether the frames that were asked for are still being drawn.
+    bool counts_frames() const { return report_.frames < static_cast<std::uint64_t>(options_.frames); }
     bool automatic() const { return options_.frames > 0 || !options_.screenshot.empty(); }
 
     // viewer_panels.cpp
@@ -98,7 +101,9 @@ class ViewerSession {
     PlaceFormat place_format_ = PlaceFormat::degrees;
     std::vector<Sight> places_;  ///< to go back to
     double noticed_at_ = -1e9;
-    bool leaving_ = false, save_next_ = false, input_ = true;
+    bool leaving_ = false, input_ = true;
+    bool worked_ = true;  ///< the last turn of the loop drew something
+    bool save_next_ = false, saved_ = false;
 
     std::deque<double> frame_seconds_, update_seconds_;
     std::vector<double> all_frame_seconds_, all_update_seconds_;

@@ -73,7 +73,9 @@ Sight Flight::at(double seconds) const {
     sight.normal = between(from_.normal, to_.normal, part);
     sight.h = std::lerp(from_.h, to_.h, part);
     sight.heading = turned(from_.heading, to_.heading, t);
-    sight.pitch = std::lerp(from_.pitch, to_.pitch, t);
+    // An eye that looks up must look down before it goes back, or it would go back into the ground.
+    const bool looks_up = from_.pitch > -5 * planet::degrees;
+    sight.pitch = std::lerp(from_.pitch, to_.pitch, looks_up ? 1 - std::pow(1 - t, 40) : t);
     return sight;
 }
 

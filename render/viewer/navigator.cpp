@@ -158,7 +158,7 @@ Sight Navigator::sight(const Lens& lens) const {
     // Where there is only sky, the view is about a point in it: flights must begin where the eye is.
     const glm::dvec3 ahead = ray(pose_, lens, lens.middle());
     const auto hit = anchor_at(lens.middle(), lens);
-    const Anchor at = hit.value_or(Anchor{pose_.eye() + (1000 + 2 * clearance()) * ahead, lens.middle()});
+    const Anchor at = hit.value_or(Anchor{pose_.eye() + 0.3 * clearance() * ahead, lens.middle()});
     const planet::NormalPosition place = planet::position_from_ecef(wgs84, at.point);
     const glm::dvec3 back = pose_.eye() - at.point;
     // The same eye as the place sees it: pose_from() does to the place's frame what it does to the eye's.

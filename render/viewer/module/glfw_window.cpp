@@ -72,6 +72,7 @@ class GlfwWindow final : public Window {
         }
     }
     ~GlfwWindow() override {
+        glfwMakeContextCurrent(window_);  // for what the panels have on the GPU
         panels_.reset();
         glfwDestroyWindow(window_);
         glfwTerminate();
