@@ -8,7 +8,7 @@
 
 #include "planet/mesh/budget.h"
 #include "planet/mesh/segments.h"
-#include "planet/store/resident_tiles.h"
+#include "planet/streaming/resident_tiles.h"
 #include "render/app/drawn_surface.h"
 #include "render/sky/atmosphere.h"
 #include "render/viewer/patch_cache.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "planet/store/resident_tiles.h"
+#include "planet/streaming/resident_tiles.h"
 #include "render/app/render_options.h"
 
 namespace render {
