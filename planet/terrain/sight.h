@@ -24,8 +24,9 @@
 
 namespace planet {
 
-/// Cells of the ground are halved until no side is longer: c then bulges to 1 cm.
-inline constexpr double sight_side_m = 10000;
+/// Cells of the ground are halved until no side is longer: c, which takes the planet for a sphere there, is then good to
+/// 2 mm.
+inline constexpr double sight_side_m = 5000;
 /// From the eye to the target along the ellipsoid: whatever is seen in air, from at most 20 km above ground of 9 km to the
 /// same, is nearer.
 inline constexpr double sight_distance_max_m = 2e6;
