@@ -50,9 +50,15 @@ struct Cut {
 Cut cut(const Arc& arc, const Corners& corners, const glm::dvec3& centre) {
     const glm::dvec3 m = glm::cross(arc.a, arc.b);
     const glm::dvec3 corner[3] = {corners.left, corners.right, corners.apex};
-    const double s[3] = {glm::dot(m, corner[0]), glm::dot(m, corner[1]), glm::dot(m, corner[2])};
+    double s[3];
+    const double touch =
+        1e-13 * glm::length(m);  // 0.6 um: rings along sides of cells, such as meridians, do not cut them
+    for (int k = 0; k < 3; ++k) {
+        s[k] = glm::dot(m, corner[k]);
+        if (std::abs(s[k]) < touch) s[k] = 0;
+    }
+    if (std::max({s[0], s[1], s[2]}) <= 0 || std::min({s[0], s[1], s[2]}) >= 0) return {};
     const bool above[3] = {s[0] >= 0, s[1] >= 0, s[2] >= 0};
-    if (above[0] == above[1] && above[1] == above[2]) return {};
     // The corner that is alone on its side, and where the great circle meets its two sides.
     const int alone = above[1] == above[2] ? 0 : above[0] == above[2] ? 1 : 2;
     const glm::dvec3 ahead_of_a = glm::cross(m, arc.a), before_b = glm::cross(arc.b, m);

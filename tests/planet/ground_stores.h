@@ -49,7 +49,7 @@ class HillField final : public ElevationField {
     }
     double spacing(const Cap& cap) const override {
         const double apart = std::acos(std::clamp(glm::dot(cap.centre, normal_of(hills_middle)), -1.0, 1.0));
-        return apart <= cap.angle + 0.0125 ? 700 : 1e5;
+        return apart <= cap.angle + 0.006 ? 700 : 1e5;
     }
     void samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const override {
         for (const glm::dvec3& n : scattered()) {
@@ -62,13 +62,13 @@ class HillField final : public ElevationField {
         return {{"hills", std::string(64, 'h'), "", VerticalDatum::egm96, 700}};
     }
 
-    /// Samples within 70 km of the middle, on Vogel's spiral.
+    /// Samples within 30 km of the middle, on Vogel's spiral.
     static const std::vector<glm::dvec3>& scattered() {
         static const std::vector<glm::dvec3> all = [] {
-            constexpr int count = 5000;
+            constexpr int count = 1000;
             std::vector<glm::dvec3> normals;
             for (int i = 0; i < count; ++i) {
-                const double r = 0.011 * std::sqrt((i + 0.5) / count), a = 2.399963 * i;
+                const double r = 0.005 * std::sqrt((i + 0.5) / count), a = 2.399963 * i;
                 normals.push_back(
                     normal_from_geodetic(hills_middle.latitude + r * std::sin(a),
                                          hills_middle.longitude + r * std::cos(a) / std::cos(hills_middle.latitude)));
@@ -79,7 +79,7 @@ class HillField final : public ElevationField {
     }
 };
 
-/// 700 m between vertices within 80 km of the middle, 100 km elsewhere; over a made-up geoid.
+/// 700 m between vertices within 38 km of the middle, 100 km elsewhere; over a made-up geoid.
 inline const StoreField& hills() {
     static const StoreField field(std::make_shared<const ElevationStore>([] {
         BakeOptions options;
@@ -93,7 +93,7 @@ inline const StoreField& hills() {
 class PlacesInHills {
   public:
     explicit PlacesInHills(unsigned seed = 5) : random_(seed) {}
-    Geodetic next(double radius_m = 60000) {
+    Geodetic next(double radius_m = 32000) {
         const Geodesics lines(wgs84);
         const GeodesicPoint p = lines.direct(hills_middle, 2 * std::numbers::pi * unit(), radius_m * unit());
         return {p.latitude, p.longitude, {}};

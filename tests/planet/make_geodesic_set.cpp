@@ -31,7 +31,7 @@ const GeographicLib::GeodesicExact& lines = GeographicLib::GeodesicExact::WGS84(
 void write(double lat1, double lon1, double lat2, double lon2) {
     double s12 = 0, azi1 = 0, azi2 = 0, m12 = 0, M12 = 0, M21 = 0, S12 = 0;
     lines.Inverse(lat1, lon1, lat2, lon2, s12, azi1, azi2, m12, M12, M21, S12);
-    std::printf("%.15g %.15g %.15g %.15g %.15g %.15g %.9f %.3f\n", lat1, lon1, azi1, lat2, lon2, azi2, s12, S12);
+    std::printf("%.17g %.17g %.17g %.17g %.17g %.17g %.9f %.3f\n", lat1, lon1, azi1, lat2, lon2, azi2, s12, S12);
 }
 
 }  // namespace
