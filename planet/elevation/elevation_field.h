@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "planet/frames.h"
+#include "planet/octahedron/cap.h"
 
 namespace planet {
 
@@ -20,12 +21,6 @@ enum class VerticalDatum {
 
 /// "egm96" or "ellipsoid".
 std::string_view name_of(VerticalDatum datum);
-
-/// A cap on the sphere of geodetic normals.
-struct Cap {
-    glm::dvec3 centre{0, 0, 1};  ///< unit
-    double angle = 0;            ///< rad, 0..pi
-};
 
 /// Normals and heights in metres, of the same size; good for the time of the call.
 using SampleRowVisitor = std::function<void(std::span<const glm::dvec3> normals, std::span<const float> heights)>;

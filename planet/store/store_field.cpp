@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "planet/octahedron/cell_metrics.h"
-#include "planet/store/coverage.h"
 
 namespace planet {
 

@@ -12,8 +12,9 @@ namespace {
 
 // Arcs of great circles on the sphere of normals no longer than this part from geodesics by less than 4 mm.
 constexpr double arc_m = 5000;
-// Cells are halved until no side is longer: plane triangles are then smaller than the ground by less than 1e-6.
-constexpr double ground_side_m = 10000;
+// Cells are halved until no side is longer: the area of the sphere over a plane triangle, to second order, is then good to
+// 1e-7.
+constexpr double ground_side_m = 100000;
 
 double triple(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return glm::dot(a, glm::cross(b, c));
@@ -173,10 +174,7 @@ class AreaVisitor {
     }
     void visit(const GroundCell& cell) {
         const State& state = stack_.back();
-        const glm::dvec3 l = ecef_from_normal(e_, cell.normal.left, {cell.h[0]}),
-                         r = ecef_from_normal(e_, cell.normal.right, {cell.h[1]}),
-                         a = ecef_from_normal(e_, cell.normal.apex, {cell.h[2]});
-        const double area = 0.5 * glm::length(glm::cross(r - l, a - l));
+        const double area = area_of(cell);
         ++result.cells;
         double share = state.known.inside ? 1 : 0;
         if (!state.near.empty() && is_clear(cell)) {
@@ -206,6 +204,19 @@ class AreaVisitor {
         std::vector<std::uint32_t> near;  // arcs that may pass through the cell
         Known known;                      // its centre
     };
+
+    // Of the plane triangle, and by as much more as the sphere's is over the triangle of the normals.
+    double area_of(const GroundCell& cell) const {
+        const auto plane = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+            return 0.5 * glm::length(glm::cross(b - a, c - a));
+        };
+        const auto& [l, r, a] = cell.normal;
+        const double flat = plane(ecef_from_normal(e_, l, {cell.h[0]}), ecef_from_normal(e_, r, {cell.h[1]}),
+                                  ecef_from_normal(e_, a, {cell.h[2]}));
+        if (glm::length(r - l) < 3e-4) return flat;
+        const double dots = glm::dot(l, r) + glm::dot(r, a) + glm::dot(a, l);
+        return flat * 2 * std::atan2(std::abs(triple(l, r, a)), 1 + dots) / plane(l, r, a);
+    }
 
     // Whether the share that is inside is known: no arc, or one from side to side.
     bool is_clear(const GroundCell& cell) const {

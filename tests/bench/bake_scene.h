@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "planet/bake/bake.h"
 #include "planet/elevation/raster_field.h"
 #include "planet/mesh/saturation.h"
-#include "planet/store/bake.h"
 #include "planet/store/baked_tile.h"
 #include "planet/store/ladder.h"
 #include "planet/store/tile_codec.h"

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "bake_scene.h"
-#include "planet/store/bake.h"
+#include "planet/bake/bake.h"
 #include "planet/store/tile_sides.h"
 
 namespace {

@@ -13,9 +13,9 @@
 #include <thread>
 
 #include "bumpy_field.h"
+#include "planet/bake/frontier.h"
+#include "planet/bake/settling.h"
 #include "planet/error.h"
-#include "planet/store/bake_frontier.h"
-#include "planet/store/bake_settling.h"
 #include "reference_bake.h"
 
 namespace planet {

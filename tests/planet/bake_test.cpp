@@ -1,4 +1,4 @@
-#include "planet/store/bake.h"
+#include "planet/bake/bake.h"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 #include <random>
 
 #include "bumpy_field.h"
+#include "planet/bake/coverage.h"
 #include "planet/error.h"
 #include "planet/mesh/deviation.h"
 #include "planet/mesh/view.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/coverage.h"
 #include "planet/store/tile_cache.h"
 #include "planet/store/tile_codec.h"
 #include "planet/store/tile_sides.h"

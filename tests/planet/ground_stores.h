@@ -6,10 +6,10 @@
 #include <random>
 
 #include "bumpy_field.h"
+#include "planet/bake/bake.h"
 #include "planet/elevation/constant_field.h"
 #include "planet/geodesy/geodesic.h"
 #include "planet/geodesy/geodetic.h"
-#include "planet/store/bake.h"
 #include "planet/store/store_field.h"
 
 namespace planet::testing {

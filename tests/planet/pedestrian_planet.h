@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bumpy_field.h"
+#include "planet/bake/bake.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/bake.h"
 #include "planet/store/planet_mesh.h"
 #include "planet/store/store_field.h"
 #include "planet/store/tile_sides.h"

@@ -10,10 +10,10 @@
 #include <set>
 
 #include "pedestrian_planet.h"
+#include "planet/bake/bake.h"
 #include "planet/error.h"
 #include "planet/mesh/surface_check.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/bake.h"
 #include "planet/store/store_field.h"
 #include "planet/store/tile_sides.h"
 

@@ -10,10 +10,10 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "planet/bake/bake.h"
+#include "planet/bake/coverage.h"
 #include "planet/mesh/deviation.h"
-#include "planet/store/bake.h"
 #include "planet/store/baked_tile.h"
-#include "planet/store/coverage.h"
 #include "planet/store/ladder.h"
 #include "planet/store/surface_cursor.h"
 #include "planet/store/tile_codec.h"

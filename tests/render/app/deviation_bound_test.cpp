@@ -8,10 +8,10 @@
 
 #include <unordered_map>
 
+#include "planet/bake/bake.h"
 #include "planet/elevation/layered_field.h"
 #include "planet/elevation/raster_field.h"
 #include "planet/geodesy/geoid.h"
-#include "planet/store/bake.h"
 #include "render/app/data_path.h"
 #include "tests/render/app/earth_views.h"
 #include "tests/render/app/segment_triangles.h"

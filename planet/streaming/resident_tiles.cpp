@@ -1,10 +1,10 @@
-#include "planet/store/resident_tiles.h"
+#include "planet/streaming/resident_tiles.h"
 
 #include <algorithm>
 #include <cassert>
 #include <limits>
 
-#include "planet/store/view_needs.h"
+#include "planet/streaming/view_needs.h"
 
 namespace planet {
 

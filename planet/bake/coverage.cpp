@@ -1,4 +1,4 @@
-#include "planet/store/coverage.h"
+#include "planet/bake/coverage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,17 +9,6 @@
 #include "planet/octahedron/octahedron_map.h"
 
 namespace planet {
-
-namespace {
-
-Cap cap_of(const Corners& c) {
-    const glm::dvec3 centre = glm::normalize(c.left + c.right + c.apex);
-    double chord = 0;
-    for (const glm::dvec3& corner : {c.left, c.right, c.apex}) chord = std::max(chord, glm::length(corner - centre));
-    return {centre, 2 * std::asin(std::min(1.0, chord / 2)) * (1 + 1e-9) + 1e-15};
-}
-
-}  // namespace
 
 TilePlan::Depths TilePlan::at(LocationCode root) const {
     const auto found = blocks_.find(root.bits() >> tile_levels);
@@ -167,10 +156,6 @@ class CoveragePlanner {
     std::unordered_map<std::uint64_t, std::unique_ptr<std::bitset<tile_cells>>> required_;  // by tile: local indices
     std::size_t bytes_ = 0;
 };
-
-Cap cap_of(LocationCode cell) {
-    return cap_of(corners(cell));
-}
 
 TilePlan coverage(const ElevationField& field, const CoverageLimits& limits) {
     return CoveragePlanner(field, limits).plan();

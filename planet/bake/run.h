@@ -13,9 +13,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "planet/store/bake_file.h"
-#include "planet/store/bake_frontier.h"
-#include "planet/store/bake_tiles.h"
+#include "planet/bake/file.h"
+#include "planet/bake/frontier.h"
+#include "planet/bake/tiles.h"
 
 namespace planet {
 

@@ -1,4 +1,4 @@
-#include "planet/store/store_tiles.h"
+#include "planet/streaming/store_tiles.h"
 
 namespace planet {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "planet/mesh/segments.h"
-#include "planet/store/resident_set.h"
+#include "planet/streaming/resident_set.h"
 
 namespace planet {
 

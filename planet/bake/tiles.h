@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "planet/store/bake.h"
-#include "planet/store/bake_existence.h"
-#include "planet/store/bake_frontier.h"
-#include "planet/store/bake_resampling.h"
+#include "planet/bake/bake.h"
+#include "planet/bake/existence.h"
+#include "planet/bake/frontier.h"
+#include "planet/bake/resampling.h"
 #include "planet/store/tile_codec.h"
 
 namespace planet {

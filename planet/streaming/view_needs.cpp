@@ -1,4 +1,4 @@
-#include "planet/store/view_needs.h"
+#include "planet/streaming/view_needs.h"
 
 #include <cmath>
 #include <limits>

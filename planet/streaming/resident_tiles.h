@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "planet/mesh/segments.h"
-#include "planet/store/resident_set.h"
 #include "planet/store/tile_cache.h"
-#include "planet/store/tile_loader.h"
+#include "planet/streaming/resident_set.h"
+#include "planet/streaming/tile_loader.h"
 
 namespace planet {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "planet/bake/sample_distance.h"
 #include "planet/elevation/elevation_field.h"
-#include "planet/store/sample_distance.h"
 
 namespace planet {
 

@@ -22,9 +22,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "planet/store/bake_settling.h"
-#include "planet/store/coverage.h"
-#include "planet/store/packed_heights.h"
+#include "planet/bake/coverage.h"
+#include "planet/bake/packed_heights.h"
+#include "planet/bake/settling.h"
 
 namespace planet {
 

@@ -78,7 +78,4 @@ struct CoverageLimits {
 /// Throws Error(bad_usage) when the plan needs more memory than allowed.
 TilePlan coverage(const ElevationField& field, const CoverageLimits& limits);
 
-/// A cap that holds the cell.
-Cap cap_of(LocationCode cell);
-
 }  // namespace planet

@@ -1,4 +1,4 @@
-#include "planet/store/bake_settling.h"
+#include "planet/bake/settling.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "planet/store/tile_loader.h"
+#include "planet/streaming/tile_loader.h"
 
 #include <algorithm>
 #include <utility>

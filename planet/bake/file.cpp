@@ -1,4 +1,4 @@
-#include "planet/store/bake_file.h"
+#include "planet/bake/file.h"
 
 #include <algorithm>
 

@@ -1,16 +1,16 @@
-#include "planet/store/bake.h"
+#include "planet/bake/bake.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
 
+#include "planet/bake/coverage.h"
+#include "planet/bake/file.h"
+#include "planet/bake/run.h"
+#include "planet/bake/tiles.h"
 #include "planet/error.h"
 #include "planet/octahedron/cell_metrics.h"
-#include "planet/store/bake_file.h"
-#include "planet/store/bake_run.h"
-#include "planet/store/bake_tiles.h"
-#include "planet/store/coverage.h"
 
 namespace planet {
 

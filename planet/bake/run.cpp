@@ -1,4 +1,4 @@
-#include "planet/store/bake_run.h"
+#include "planet/bake/run.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "planet/store/bake_tiles.h"
+#include "planet/bake/tiles.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "planet/store/resident_set.h"
+#include "planet/streaming/resident_set.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "planet/store/bake_frontier.h"
+#include "planet/bake/frontier.h"
 
 #include <algorithm>
 #include <cassert>

@@ -5,7 +5,7 @@
 #include <span>
 #include <unordered_map>
 
-#include "planet/store/coverage.h"
+#include "planet/bake/coverage.h"
 
 namespace planet {
 

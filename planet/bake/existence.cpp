@@ -1,4 +1,4 @@
-#include "planet/store/bake_existence.h"
+#include "planet/bake/existence.h"
 
 #include <algorithm>
 #include <array>

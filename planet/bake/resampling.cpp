@@ -1,10 +1,10 @@
-#include "planet/store/bake_resampling.h"
+#include "planet/bake/resampling.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "planet/store/coverage.h"
+#include "planet/bake/coverage.h"
 
 namespace planet {
 
