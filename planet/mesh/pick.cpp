@@ -77,7 +77,15 @@ class Picker {
         const glm::dvec3 weights(1 - right - apex, right, apex);
         const glm::dvec3 heights(static_cast<double>(t.height[vertex[0]]), static_cast<double>(t.height[vertex[1]]),
                                  static_cast<double>(t.height[vertex[2]]));
-        found_ = {distance, origin_ + distance * direction_, code_of(t, i), weights, glm::dot(weights, heights)};
+        found_ = {distance, origin_ + distance * direction_, code_of(t, i),
+                  weights,  glm::dot(weights, heights),      deviation_of(t, i)};
+    }
+
+    // Below 0 in a record: a diamond of the store that has no tile in memory.
+    static double deviation_of(const PlacedTile& t, unsigned i) {
+        if (i >> t.depth == 0) return std::abs(static_cast<double>(t.split[i].deviation));
+        if (t.depth < tile_levels || t.child_bound.empty()) return 0;
+        return std::abs(static_cast<double>(t.child_bound[i - tile_cells].deviation));
     }
 
     const TileSource& tiles_;

@@ -14,8 +14,10 @@ struct Pick {
     LocationCode cell;       ///< the triangle
     glm::dvec3 weights{0};   ///< of its corners left, right and apex: barycentric
     /// Above the store's datum, metres, linear between the corners' heights: not exaggerated, and without the sag of the
-    /// triangle. Within the cell's deviation and the sag of the finest surface.
+    /// triangle.
     double height = 0;
+    /// Of the triangle from the finest surface, metres, certified, as it is drawn: exaggerated. 0 if it is of the finest.
+    double deviation = 0;
 };
 
 /// The first triangle that a ray meets, from either side, of those that a view draws: the leaves of its split test over
