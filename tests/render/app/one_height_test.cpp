@@ -129,7 +129,7 @@ class MeshSurface {
     std::vector<std::vector<std::uint32_t>> bins_;
 };
 
-class OneHeight : public testing::Test {
+class OneHeight : public ::testing::Test {
   protected:
     OneHeight() {
         const EarthSources sources;
