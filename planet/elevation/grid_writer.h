@@ -2,7 +2,6 @@
 // Small grids of classes (a viewshed, a mask) as files that geographic information systems read, through GDAL, which is
 // in a module of its own (module.h). The bytes are made in memory: how they reach a disk is the caller's business.
 
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -16,7 +15,6 @@ struct ClassGrid {
     struct Class {
         std::uint8_t value = 0;
         std::string name;
-        std::array<std::uint8_t, 3> color{};
     };
     int width = 0, height = 0;
     std::span<const std::uint8_t> cells;  ///< row-major from the top left, width * height
@@ -32,7 +30,7 @@ struct ClassGrid {
 /// latitude, longitude degrees, on WGS84
 std::string azimuthal_equidistant_crs(double latitude, double longitude);
 
-/// A GeoTIFF with its CRS, a colour table, the value for outside and the description.
+/// A GeoTIFF with its CRS, the value for outside, the description, and the classes in the band's description.
 std::string geotiff_of(const ClassGrid& grid);
 
 /// The outline of all cells of one value as GeoJSON polygons (RFC 7946: longitude and latitude of WGS84, cut at the

@@ -27,10 +27,11 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-/// A tick's number, grouped in thousands from five digits on; as many decimals as its step needs.
-std::string tick_text(double value, double step) {
+/// A tick's number, grouped in thousands where the axis has one of five digits; as many decimals as its step needs.
+std::string tick_text(double value, const std::vector<double>& axis) {
+    const double step = axis.size() > 1 ? axis[1] - axis[0] : 1;
     const int decimals = step >= 1 ? 0 : static_cast<int>(std::ceil(-std::log10(step) - 1e-9));
-    if (decimals == 0 && std::abs(value) >= 1e4)
+    if (decimals == 0 && std::max(std::abs(axis.front()), std::abs(axis.back())) >= 1e4)
         return (value < 0 ? "\u2212" : "") + grouped(static_cast<std::size_t>(std::llround(std::abs(value))));
     const std::string text = fixed(value, decimals);
     return text.front() == '-' ? "\u2212" + text.substr(1) : text;
@@ -146,27 +147,27 @@ class Figure {
         const std::vector<double> rows = ticks(y_.low, y_.high, 6);
         for (const double v : rows) {
             line(left - 5, y_(v), left, y_(v), "stroke=\"#222\"");
-            label(left - 9, y_(v) + 4.5, tick_text(v, rows.size() > 1 ? rows[1] - rows[0] : 1), "text-anchor=\"end\"");
+            label(left - 9, y_(v) + 4.5, tick_text(v, rows), "text-anchor=\"end\"");
         }
         const double unit = x_.high >= 2000 ? 1000 : 1;
         const std::vector<double> columns = ticks(0, x_.high / unit, 10);
         for (const double v : columns) {
             line(x_(v * unit), bottom, x_(v * unit), bottom + 5, "stroke=\"#222\"");
-            label(x_(v * unit), bottom + 20, tick_text(v, columns.size() > 1 ? columns[1] - columns[0] : 1),
-                  "text-anchor=\"middle\"");
+            label(x_(v * unit), bottom + 20, tick_text(v, columns), "text-anchor=\"middle\"");
         }
         label((left + right) / 2, bottom + 42,
               unit > 1 ? "Distance along the ellipsoid (km)" : "Distance along the ellipsoid (m)",
               "text-anchor=\"middle\"");
         out_ += "<text transform=\"translate(22 " + n((top + bottom) / 2) +
-                ") rotate(-90)\" text-anchor=\"middle\">Height above " + escaped(chart_.datum) + " (m)</text>\n";
+                ") rotate(-90)\" text-anchor=\"middle\">Height above " +
+                (chart_.radius > 0 ? "the chord" : escaped(chart_.datum)) + " (m)</text>\n";
     }
 
     void words() {
-        label(left, top - 28, chart_.from, "font-weight=\"bold\"");
-        label(right, top - 28, chart_.to, "font-weight=\"bold\" text-anchor=\"end\"");
+        label(left, top - 22, chart_.from, "font-weight=\"bold\"");
+        label(right, top - 22, chart_.to, "font-weight=\"bold\" text-anchor=\"end\"");
         std::string scale = "Vertical exaggeration " + exaggeration_text();
-        if (chart_.radius > 0) scale += "; with the planet's curvature, height 0 in blue";
+        if (chart_.radius > 0) scale += "; with the planet's curvature, " + chart_.datum + " in blue";
         label(left, height - 24, scale, "font-size=\"12\" fill=\"#555\"");
         label(right, height - 24, chart_.note, "font-size=\"12\" fill=\"#555\" text-anchor=\"end\"");
     }

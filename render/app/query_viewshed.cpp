@@ -76,7 +76,7 @@ void write(const Viewshed& view, const Options& options, OutputFile& output) {
     grid.description = "Viewshed from " + place_text(options.place) + ", eye " + fixed(options.view.eye_height, 2) +
                        " m and target " + fixed(options.view.target_height, 2) + " m above the ground, refraction " +
                        fixed(options.view.refraction, 3);
-    grid.classes = {{Viewshed::hidden, "hidden", {150, 154, 160}}, {Viewshed::visible, "visible", {242, 169, 59}}};
+    grid.classes = {{Viewshed::hidden, "hidden"}, {Viewshed::visible, "visible"}};
     output.commit(ending == ".geojson" ? planet::geojson_of(grid, Viewshed::visible) : planet::geotiff_of(grid));
 }
 

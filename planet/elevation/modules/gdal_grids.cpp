@@ -81,20 +81,13 @@ class GdalGridDriver : public GridDriver {
     std::string geotiff(const ClassGrid& grid) const override {
         const GdalMessages messages;
         const MemoryFile file(".tif");
-        const char* options[] = {"COMPRESS=DEFLATE", "TILED=YES", "PHOTOMETRIC=PALETTE", nullptr};
+        const char* options[] = {"COMPRESS=DEFLATE", "TILED=YES", nullptr};
         {
             Dataset dataset = create("GTiff", file.name(), &grid, const_cast<char**>(options), messages);
             GDALRasterBand& band = *dataset->GetRasterBand(1);
-            GDALColorTable colors;
-            const GDALColorEntry none{0, 0, 0, 0};
-            for (int i = 0; i < 256; ++i) colors.SetColorEntry(i, &none);
             std::string names;
-            for (const auto& each : grid.classes) {
-                const GDALColorEntry color{each.color[0], each.color[1], each.color[2], 255};
-                colors.SetColorEntry(each.value, &color);
+            for (const auto& each : grid.classes)
                 names += (names.empty() ? "" : ", ") + std::to_string(each.value) + " " + each.name;
-            }
-            band.SetColorTable(&colors);
             band.SetNoDataValue(grid.outside);
             band.SetDescription(names.c_str());
             dataset->SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", grid.description.c_str());

@@ -147,11 +147,11 @@ TEST_F(OneHeight, QueryMeshAndPickAgree) {
     ASSERT_EQ(answers.size(), 10000u);
 
     const Outcome exported =
-        run(folder.path(), words("mesh --planet --max-deviation 300 -o earth.ply --json earth.json"));
+        run(folder.path(), words("mesh --planet --max-deviation 500 -o earth.ply --json earth.json"));
     ASSERT_EQ(exported.status, 0) << exported.err;
     const double mesh_deviation =
         nlohmann::json::parse(content(folder / "earth.json")).at("deviation_max_m").get<double>();
-    ASSERT_LE(mesh_deviation, 300);
+    ASSERT_LE(mesh_deviation, 500);
     const MeshSurface mesh(planet::read_mesh(folder / "earth.ply"));
 
     const testing::ExaggeratedEarth earth(store_, 1);
@@ -208,7 +208,8 @@ TEST_F(OneHeight, ReportsOfPicturesAgree) {
         const auto answer = nlohmann::json::parse(content(folder / "q.json"));
         EXPECT_NEAR(picture.at("centre_height_m").get<double>(), answer.at("height_m").get<double>(), 1e-4);
         EXPECT_NEAR(picture.at("centre_height_bound_m").get<double>(), answer.at("height_bound_m").get<double>(), 1e-4);
-        EXPECT_LT(picture.at("centre_deviation_m").get<double>(), 60);
+        // Half a pixel of 64 across 40 degrees.
+        EXPECT_LT(picture.at("centre_deviation_m").get<double>(), 0.5 * 1.1 * 20000 / 88);
     }
 }
 
