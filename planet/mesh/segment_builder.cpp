@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "planet/mesh/lanes.h"
+#include "planet/mesh/morph.h"
 
 namespace planet {
 
@@ -70,7 +71,7 @@ const std::array<std::uint16_t, tile_vertices>& split_cells() {
 }
 
 /// @param vertex of tile t
-MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t vertex) {
+MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t vertex, double planet_radius_m) {
     const TileLayout& layout = tile_layout();
     const GridPosition place = t->position[vertex];
     while (vertex < 3) {  // a corner: it splits a cell of a tile above
@@ -86,8 +87,11 @@ MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t v
             grid_coordinate(a, axis) + grid_coordinate(b, axis) - 2 * grid_coordinate(place, axis);
         return static_cast<float>(static_cast<double>(twice) * (0.5 * grid_unit_m));
     };
-    const SplitRecord s = t->split[split_cells()[vertex]];
-    return {offset(0), offset(1), offset(2), s.deviation, s.radius};
+    const unsigned cell = split_cells()[vertex];
+    const int level = t->root.bisection_level() + static_cast<int>(std::bit_width(cell)) - 1;
+    const SplitRecord s = t->split[cell];
+    const double width = arrival_width(level, static_cast<double>(s.radius), planet_radius_m);
+    return {offset(0), offset(1), offset(2), s.deviation, s.radius, static_cast<float>(width)};
 }
 
 }  // namespace
@@ -287,7 +291,7 @@ std::uint32_t SegmentBuilder::add(const PlacedTile& t, std::uint16_t vertex) {
     vertices_.push(
         {t.position[vertex], static_cast<std::uint16_t>(frame_.u + (frame_.left_u * i + frame_.right_u * j) / 64),
          static_cast<std::uint16_t>(frame_.v + (frame_.left_v * i + frame_.right_v * j) / 64), t.height[vertex]});
-    if (view_->morph) morphs_.push(morph_of(*tiles_, &t, vertex));
+    if (view_->morph) morphs_.push(morph_of(*tiles_, &t, vertex, view_->radius_m));
     return static_cast<std::uint32_t>(vertices_.size() - 1 - first_vertex_);
 }
 

@@ -19,15 +19,17 @@ struct SegmentVertex {
 };
 static_assert(sizeof(SegmentVertex) == 24);
 
-/// Where a vertex comes from and when: 20 bytes, as the GPU takes them.
+/// Where a vertex comes from and when, see Arrival in morph.h: 24 bytes, as the GPU takes them.
 struct MorphVertex {
     /// From the vertex to the middle of the side that it splits, ecef, metres, rounded once. 0 for corners of faces.
     float x, y, z;
     /// Of its diamond, metres, saturated and exaggerated as in its split test: the vertex comes where |eye - vertex| =
     /// radius + K deviation.
     float deviation, radius;
+    /// Metres, above 0: the vertex has arrived where the eye is that much nearer. Corners of faces: 0.
+    float width;
 };
-static_assert(sizeof(MorphVertex) == 20);
+static_assert(sizeof(MorphVertex) == 24);
 
 /// A cell, found. A cell that is a leaf where its tile ends is in the tile above.
 struct PlacedCell {

@@ -406,9 +406,9 @@ std::uint64_t Segments::hash() const {
         }
         if (view_.morph)
             for (const MorphVertex& m : morphs().subspan(s.first_vertex, s.vertex_count)) {
-                std::uint32_t word[5];
+                std::uint64_t word[3];
                 std::memcpy(word, &m, sizeof m);
-                words(word, 5);
+                words(word, 3);
             }
         words(indices_.data() + s.first_index, s.index_count);
         words(leaf_levels_.data() + s.first_leaf, s.leaves);
