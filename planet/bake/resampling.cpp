@@ -33,7 +33,8 @@ void TileResampling::add_without_tiles(const Surface& surface, LocationCode cell
 }
 
 void TileResampling::add(const Surface& surface, LocationCode cell) {
-    const Cap cap = cap_of(cell);
+    const Corners cell_corners = corners(cell);
+    const Cap cap = cap_of(cell_corners);
     const double spacing = surface.field.spacing(cap);
     if (!std::isfinite(spacing)) return;
     const double across = cap.angle * surface.placement.ellipsoid.mean_radius();
@@ -42,9 +43,10 @@ void TileResampling::add(const Surface& surface, LocationCode cell) {
         for (int i = 0; i < 2; ++i) add(surface, cell.child(i));
         return;
     }
-    surface.field.sample_rows(cap, [this](std::span<const glm::dvec3> normals, std::span<const float> heights) {
-        distance_.add(normals, heights);
-    });
+    surface.field.sample_rows(SampleArea(cell_corners),
+                              [this](std::span<const glm::dvec3> normals, std::span<const float> heights) {
+                                  distance_.add(normals, heights);
+                              });
 }
 
 }  // namespace planet

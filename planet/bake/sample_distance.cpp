@@ -55,7 +55,7 @@ double triple(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 // Samples that are looked at together.
 struct SampleDistance::Piece {
-    static constexpr std::size_t most = 64;
+    static constexpr std::size_t most = 512;
     std::array<double, most> u, v;
     std::array<double, most> inside;         // of the root's sides
     std::array<double, most> from_side;      // of the nearest cell
@@ -105,8 +105,8 @@ void SampleDistance::find_slack() {
         return;
     }
     bend_ = largest_bend() + least_bend;
-    const auto [low, high] = std::minmax_element(tile_->height.begin(), tile_->height.end());
-    const double relief = static_cast<double>(*high) - static_cast<double>(*low);
+    const auto [low, high] = least_and_most(tile_->height);
+    const double relief = static_cast<double>(high) - static_cast<double>(low);
     const double radius = placement_->ellipsoid.b;
     const double side = 1.1 * root * (whole_ ? std::ldexp(1.0, -(tile_->depth / 2)) : 1.0) * radius;  // the longest
     slack_ = side * side / (4 * radius) + relief * (6 * relief / radius + 4 * bend_ + root * root) + 1e-3;
@@ -146,7 +146,7 @@ void SampleDistance::find_finest() {
     for (unsigned k = 0; k < tile_cells; ++k) {
         unsigned local = (tile_cells + k) >> above;
         while (!exists_[local >> 1]) local >>= 1;
-        const bool covered = local >= tile_cells && !covered_.empty() && covered_[k];
+        const bool covered = local >> tile_->depth != 0 && !covered_.empty() && covered_[k >> above];
         finest_[k] = covered ? std::uint16_t{0} : static_cast<std::uint16_t>(local);
     }
 }
@@ -247,7 +247,7 @@ void SampleDistance::add_exactly(const glm::dvec3& n, float height) {
     for (const glm::dvec3* side : {&by_apex_, &by_left_, &by_right_})
         if (glm::dot(*side, n) < -on_side) return;
     const unsigned local = finest_cell(n);
-    if (local >= tile_cells && !covered_.empty() && covered_[local - tile_cells]) return;
+    if (local >> tile_->depth != 0 && !covered_.empty() && covered_[local - (1u << tile_->depth)]) return;
     ++exact_;
     largest_ = std::max(largest_, std::abs(static_cast<double>(height) - surface(local, n)));
 }

@@ -76,8 +76,9 @@ MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t v
     const GridPosition place = t->position[vertex];
     while (vertex < 3) {  // a corner: it splits a cell of a tile above
         if (t->root.bisection_level() == 0) return {};
-        const auto local = static_cast<std::size_t>(t->root.bits() & (tile_cells - 1)) | std::size_t{tile_cells};
-        t = tiles.tile(t->root.ancestor(t->root.bisection_level() - tile_levels));
+        const TileLayers layers = tiles.layers();
+        const unsigned local = layers.local_above(t->root);
+        t = tiles.tile(layers.above(t->root));
         if (t == nullptr) return {};
         vertex = layout.corners[local][vertex];
     }
@@ -201,12 +202,13 @@ int SegmentBuilder::find_in_children(const PlacedTile& t, unsigned i, int level,
 // Where the tile ends: a leaf, unless a tile below goes on. @param margin that of the parent
 int SegmentBuilder::find_below(const PlacedTile& t, unsigned i, int level, double margin) {
     constexpr SplitRecord none{};
-    if (t.depth < tile_levels || t.child_bound.empty()) return push(t, i, level, 0, none, margin);
-    const SplitRecord bound = t.child_bound[i - tile_cells];
+    if (t.child_bound.empty()) return push(t, i, level, 0, none, margin);
+    const unsigned k = t.position_below(i);
+    const SplitRecord bound = t.child_bound[k];
     const Compared at_bound{test_.distance2(bound), test_.reach(bound)};
     if (!test_(bound)) return push(t, i, level, at_bound.distance2, bound, margin);
     margin = std::min(margin, margin_of(at_bound.distance2, at_bound.reach));
-    const PlacedTile* below = t.child(*tiles_, i - tile_cells);
+    const PlacedTile* below = t.child(*tiles_, k);
     if (!below) {
         const SplitRecord wanting{bound.x, bound.y, bound.z, -bound.deviation, bound.radius};
         return push(t, i, level, at_bound.distance2, wanting, margin);
@@ -220,7 +222,7 @@ int SegmentBuilder::find_below(const PlacedTile& t, unsigned i, int level, doubl
 /// Makes a segment of the uppermost leaves of the stack.
 void SegmentBuilder::finish(PlacedCell root, int leaves) {
     if (root.local >> root.tile->depth && leaves > 1)  // not a leaf: the tile below has its record
-        root = {root.tile->child(*tiles_, root.local - tile_cells), 1};
+        root = {root.tile->child(*tiles_, root.tile->position_below(root.local)), 1};
     BuiltSegment segment{.root = root,
                          .cell = root.code(),
                          .patch = patch_,
@@ -247,8 +249,12 @@ void SegmentBuilder::make(BuiltSegment& segment) {
     const int tile_level = t.root.bisection_level();
     segment.vertices = static_cast<std::uint32_t>(vertices_.size()) - segment.first_vertex;
     segment.indices = static_cast<std::uint32_t>(strip_.indices().size()) - segment.first_index;
-    segment.detailed = tile_level >= view_->detail_level ||
-                       (tile_level + tile_levels >= view_->detail_level && t.has_child_below(segment.root.local));
+    // Tiles below are there for what is finer than where they begin: nearly all of it is as fine as asked for, if that is
+    // at most a few levels more.
+    constexpr int few = 4;
+    const int end_level = tile_level + t.depth;
+    segment.detailed = end_level > view_->detail_level ||
+                       (end_level + few > view_->detail_level && t.has_child_below(segment.root.local));
 }
 
 /// Returns whether a damaged tile is among those looked at.

@@ -41,13 +41,18 @@ float magnified(float footprint) {
 }
 
 /// Noise at the planet-fixed point beside the eye, with the finest features at about two pixels whatever the distance:
-/// two octave bands, cross-faded by the logarithm of the footprint. rgb: gradient -1..1, a: value -1..1.
-vec4 detail_noise(vec3 view, float footprint) {
+/// two octave bands, cross-faded by the logarithm of the footprint. Mips come from the footprint too: where bands begin,
+/// the differences between pixels mean nothing, and showed as dashes. rgb: gradient -1..1, a: value -1..1.
+/// @param along the longer side of the pixel on the ground, m
+vec4 detail_noise(vec3 view, float footprint, float along) {
     float level = log2(clamp(footprint, 0.002f, 1024.0f)) + 1.0f;
     float scale = exp2(-floor(level)) / 64.0f;
     // What repeats within 128 m takes the finer position, or millimetres of the eye would be centimetres of the noise.
     vec3 p = ((level < 1.0f ? vec3(sky_near) : vec3(sky_detail)) + view) * scale;
-    return mix(texture(noise_table, p), texture(noise_table, p * 0.5f), fract(level)) * 2.0f - vec4(1.0f);
+    // A texel is 2^floor(level) m, one to two footprints.
+    float lod = max(log2(max(along, 0.002f)) - floor(level), 0.0f);
+    vec4 finer = textureLod(noise_table, p, lod), coarser = textureLod(noise_table, p * 0.5f, max(lod - 1.0f, 0.0f));
+    return mix(finer, coarser, fract(level)) * 2.0f - vec4(1.0f);
 }
 
 /// Noise with features of `size` metres and three octaves below, as far as the footprint allows. @param size a power of two up
@@ -170,7 +175,7 @@ vec3 surface_radiance(SurfaceInput s) {
         // On a slope seen at a grazing angle a pixel is long: what is finer than that would be dashes along crests.
         SurfaceInput slanted = s;
         slanted.footprint = s.footprint / max(dot(s.terrain_normal, to_eye), 0.08f);
-        vec4 fine = detail_noise(s.view, sqrt(s.footprint * slanted.footprint));
+        vec4 fine = detail_noise(s.view, sqrt(s.footprint * slanted.footprint), slanted.footprint);
         float middle = patch_noise(s.view, 256.0f).w;
         float large = patch_noise(s.view, 2048.0f).w + 0.5f * middle;
         // Single stones and bushes are what a pixel can show near by; from afar as strong a grain would be felt, not ground.

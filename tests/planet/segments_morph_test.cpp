@@ -40,7 +40,7 @@ using Mesh = std::map<Key, Vertex>;
 
 void note_sides(const TileSource& tiles, const SplitTest& test, const PlacedTile& t, unsigned i, Mesh& mesh) {
     if (i >> t.depth) {
-        const PlacedTile* below = t.depth == tile_levels ? t.child(tiles, i - tile_cells) : nullptr;
+        const PlacedTile* below = t.child(tiles, t.position_below(i));
         if (below) note_sides(tiles, test, *below, 1, mesh);
         return;
     }

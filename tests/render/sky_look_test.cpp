@@ -85,7 +85,8 @@ TEST(SkySurface, NoiseStaysWhereItIsWhenTheEyeCrossesItsPeriod) {
             EXPECT_NEAR(a.patch_noise(vec3(x, 0, 0), size).w, b.patch_noise(vec3(x, 0, 0), size).w, 0.02f) << size;
     for (float footprint = 0.001f; footprint < 1e5f; footprint *= 1.3f)
         for (float x = 0; x < 64 * footprint; x += 5 * footprint)
-            EXPECT_NEAR(a.detail_noise(vec3(x, 0, 0), footprint).w, b.detail_noise(vec3(x, 0, 0), footprint).w, 0.02f)
+            EXPECT_NEAR(a.detail_noise(vec3(x, 0, 0), footprint, footprint).w,
+                        b.detail_noise(vec3(x, 0, 0), footprint, footprint).w, 0.02f)
                 << footprint;
 }
 
@@ -99,7 +100,7 @@ TEST(SkySurface, NoiseStandsStillUnderMillimetres) {
         s.sky_detail = glm::vec4(glm::dvec4(eye, 5, 7, 9784));
         s.sky_near = glm::vec4(glm::dvec4(std::fmod(eye, 128.0), 5, 7, 0));
         const vec3 view(static_cast<float>(ground - eye), 0.3f, 0);
-        const float noise = s.detail_noise(view, 0.001f).w + s.patch_noise(view, 4).w;
+        const float noise = s.detail_noise(view, 0.001f, 0.001f).w + s.patch_noise(view, 4).w;
         if (step == 0) first = noise;
         EXPECT_NEAR(noise, first, 0.02f) << step;
     }
