@@ -142,6 +142,20 @@ std::vector<glm::ivec2> TinSource::pole_samples() const {
     return samples_at_poles(*raster_);
 }
 
+double share_above_plane(const planet::RasterFrame& tangent, glm::ivec2 size) {
+    const glm::dvec2 last(size - 1);
+    std::vector<glm::dvec2> at;
+    for (const double x : {0.0, 0.5, 1.0})
+        for (const double y : {0.0, 0.5, 1.0}) at.push_back(last * glm::dvec2(x, y));
+    const std::vector<double> heights(at.size());
+    std::vector<glm::dvec3> placed(at.size());
+    std::vector<glm::vec3> up(at.size());
+    tangent.place(at, heights, placed, up);
+    double least = 1;
+    for (const glm::vec3& u : up) least = std::min(least, static_cast<double>(u.z));
+    return std::max(0.94, least - 1e-6);
+}
+
 PlacedBox box_of_window(const planet::RasterFrame& frame, glm::ivec2 first, glm::ivec2 last, double lowest,
                         double highest) {
     constexpr int places = 16;  // along each side

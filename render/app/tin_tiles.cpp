@@ -55,7 +55,10 @@ class TileMaker {
           end_(tiling_.width() - 1, tiling_.height() - 1),
           map_(*source_.raster()),
           figures_(tiling_.count()) {
-        if (curves(frame_)) tangent_.emplace(source_.tangent_frame());
+        if (curves(frame_)) {
+            tangent_.emplace(source_.tangent_frame());
+            scale_ = command.exaggeration * share_above_plane(*tangent_, {tiling_.width(), tiling_.height()});
+        }
         if (command.error_grid)
             error_grid_ = std::make_unique<planet::RasterWriter>(command.error_grid->string(), *source_.raster());
         if (command.drape) drape_.emplace(*command.drape);
@@ -149,9 +152,9 @@ class TileMaker {
     }
 
     planet::TinMesh triangulate(const TileWindow& w) const {
-        const double scale = tangent_ ? command_.exaggeration : 1, bound = *command_.max_deviation;
+        const double bound = *command_.max_deviation;
         planet::TiledTinOptions how;
-        how.tolerance = scale * std::max(0.5 * bound, bound - rounding_);
+        how.tolerance = scale_ * std::max(0.5 * bound, bound - rounding_);
         how.quality = command_.quality;
         std::optional<HeightGrid> over_plane;
         if (tangent_) over_plane.emplace(planet::heights_above_tangent_plane(w.window, tangent_->window(w.first), 1));
@@ -393,6 +396,7 @@ class TileMaker {
     std::mutex error_grid_mutex_;
 
     double grid_step_ = 0, rounding_ = 0;
+    double scale_ = 1;           ///< of the tolerance, for heights above a plane
     std::set<Sample> inserted_;  ///< on borders; changes between passes only
     std::vector<TileFigures> figures_;
     TileFigures all_;
