@@ -40,10 +40,6 @@ const std::vector<std::uint16_t>& side_cells_of(Side side) {
 
 }  // namespace
 
-SideSteps FrontierTile::steps(std::size_t k) const {
-    return {std::max(mine[k].deviation, theirs[k].deviation), std::max(mine[k].radius, theirs[k].radius)};
-}
-
 std::vector<LocationCode> tiles_around(LocationCode root) {
     std::vector<LocationCode> met;
     met.reserve(16);
