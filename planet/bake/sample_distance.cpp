@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "planet/mesh/lanes.h"
+#include "planet/lanes.h"
 #include "planet/store/tile_sides.h"
 
 namespace planet {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "planet/mesh/lanes.h"
+#include "planet/mesh/lane_plane.h"
 
 namespace planet {
 
