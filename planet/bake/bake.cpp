@@ -25,6 +25,7 @@ void check_range(std::string_view name, double value, double least, double most)
 void check(const BakeOptions& o) {
     check_range("the least level", o.least_level, 1, max_bisection_level);
     check_range("the finest level", o.finest_level, o.least_level, max_bisection_level);
+    check_range("the first tile level", o.first_tile_level, 0, tile_levels);
     check_range("the number of tiles in a transaction", o.transaction_tiles, 1, 1e6);
     check_range("the number of threads", o.threads, 0, 4096);
     check_range("the number of extra levels", o.extra_levels, -max_bisection_level, max_bisection_level);
@@ -70,8 +71,10 @@ class Bake {
                                   .least_level = options_.least_level,
                                   .finest_level = options_.finest_level,
                                   .extra_levels = options_.extra_levels,
+                                  .first_tile_level = options_.first_tile_level,
                                   .memory_bytes = options_.memory_bytes / 2});
         if (!has_memory_for(options_, plan_)) refuse_memory(options_);
+        metadata_.layers = plan_.layers();
         metadata_.finest_level = plan_.finest_level();
         metadata_.quantum_m = options_.quantum_m > 0 ? options_.quantum_m : quantum_for(metadata_.finest_level, radius);
         metadata_.tiles = plan_.tiles();
@@ -108,6 +111,7 @@ class Bake {
     BakeReport& report(const StoreMetadata& m) {
         report_.tiles = m.tiles;
         report_.vertices = m.vertices;
+        report_.layers = m.layers;
         report_.finest_level = m.finest_level;
         report_.quantum_m = m.quantum_m;
         report_.resampling_max_m = m.resampling_max_m;

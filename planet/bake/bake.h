@@ -27,7 +27,10 @@ struct BakeOptions {
     int least_level = 12;   ///< bisection level; cells are at least this fine everywhere, 1..60
     int finest_level = 60;  ///< and nowhere finer than this, least_level..60
     int extra_levels = 0;   ///< finer than one vertex a sample by this much; may be negative
-    double quantum_m = 0;   ///< of heights: a power of two, 1/256 .. 64; 0: 0.25, less below 30 m spacing
+    /// TileLayers::first: the faces' tiles have this many levels if there are tiles below them, 1..12. 0: what makes the
+    /// cheapest store.
+    int first_tile_level = 0;
+    double quantum_m = 0;  ///< of heights: a power of two, 1/256 .. 64; 0: 0.25, less below 30 m spacing
 
     /// Of the bake itself: the plan, the tiles that can still change, buffers. Not of the field's own windows. Content
     /// does not depend on it.
@@ -50,6 +53,7 @@ struct BakeReport {
     std::uint64_t tiles = 0;
     std::uint64_t vertices = 0;
     std::uint64_t vertices_resumed = 0;  ///< of tiles that were in the file already
+    TileLayers layers;
     int finest_level = 0;
     double quantum_m = 0;
     double resampling_max_m = 0;     ///< no source sample is farther from the finest surface

@@ -15,15 +15,18 @@
 #include <vector>
 
 #include "planet/elevation/elevation_field.h"
-#include "planet/octahedron/location_code.h"
+#include "planet/octahedron/octahedron_map.h"
 #include "planet/store/tile_sides.h"
 
 namespace planet {
 
-/// A byte and a bit for each tile, in blocks of the 4096 places below one tile. Roots are of bisection levels 0, 12, 24,
-/// 36 or 48.
+/// A byte and a bit for each tile, in blocks of the up to 4096 places below one tile.
 class TilePlan {
   public:
+    explicit TilePlan(TileLayers layers = {}) : layers_(layers) {}
+
+    /// Where tiles begin.
+    TileLayers layers() const { return layers_; }
     /// How many levels of cells of a tile can be split, 1..12; 0: there is no such tile.
     int depth(LocationCode root) const;
     bool contains(LocationCode root) const { return depth(root) > 0; }
@@ -56,11 +59,17 @@ class TilePlan {
         std::array<Depths, tile_cells> depths{};
         std::bitset<tile_cells> final;
     };
-    static std::size_t place(LocationCode root) { return root.bits() & (tile_cells - 1); }
+    struct Place {
+        std::uint64_t block;
+        std::size_t index;
+    };
+    Place place(LocationCode root) const;
+    LocationCode root_at(std::uint64_t block, std::size_t index) const;
     Depths at(LocationCode root) const;
     void count();
 
-    // By the bits of the tile above; the faces are in block 0.
+    TileLayers layers_;
+    // By the bits of the tile above; the faces are in block 0, by their bits.
     std::unordered_map<std::uint64_t, std::unique_ptr<Block>> blocks_;
     std::uint64_t tiles_ = 0, vertices_ = 0;
     int finest_level_ = 0;
@@ -71,8 +80,12 @@ struct CoverageLimits {
     int least_level = 12;                             ///< the whole planet has cells at least this fine
     int finest_level = 60;                            ///< nothing is finer, whatever the field's spacing
     int extra_levels = 0;                             ///< added to what the field's spacing asks for
+    int first_tile_level = 0;                         ///< TileLayers::first; 0: cheapest_layers()
     std::size_t memory_bytes = std::size_t{1} << 30;  ///< of the plan while it is made
 };
+
+/// The bisection level that the field's spacing and the limits ask for in a cell.
+int finest_level_in(const Corners& cell, const ElevationField& field, const CoverageLimits& limits);
 
 /// The tiles of a bake. The eight faces are always among them, and with a tile the one above it.
 /// Throws Error(bad_usage) when the plan needs more memory than allowed.

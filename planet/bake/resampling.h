@@ -25,7 +25,7 @@ class TileResampling {
     /// The largest |height of a sample - surface| in metres, rounded up to float, over the field's samples in those of
     /// the tile's own cells that have no cells below. A sample on a side counts for the cells on both sides. Samples are
     /// asked for in caps of at most some ten thousands.
-    /// @param has_tile_below by position at relative level 12, 1 where the cells below are another tile's; or empty
+    /// @param has_tile_below by position at relative level `depth`, 1 where the cells below are another tile's; or empty
     float largest(const Surface& surface, std::span<const std::uint8_t> has_tile_below);
 
   private:

@@ -69,7 +69,7 @@ std::vector<std::uint8_t> saved(InnerTile& inner) {
 // The larger of what is known and what was. False: the bytes are damaged.
 bool merge(std::span<const std::uint8_t> bytes, InnerTile& inner) {
     std::uint64_t checksum;
-    constexpr std::size_t size = sizeof(float) * (2 + 2 * tile_vertices + 2 * tile_cells);
+    const std::size_t size = sizeof(float) * (2 + 2 * tile_vertices + 2 * inner.tile.child_deviation.size());
     if (bytes.size() != size + sizeof checksum) return false;
     std::memcpy(&checksum, bytes.data() + size, sizeof checksum);
     if (checksum != checksum_of(bytes.first(size))) return false;
@@ -261,7 +261,7 @@ void BakeRun::enter_frontier(TileMaker& maker, Lock& lock) {
     lock.unlock();
     std::unique_ptr<FrontierTile> tile = maker.enter_frontier(std::move(inner), std::move(theirs));
     lock.lock();
-    vertices_ += tile_vertices;
+    vertices_ += tile_layout().vertex_count[static_cast<std::size_t>(tile->depth)];
     frontier_.add(std::move(tile));
 }
 

@@ -147,7 +147,7 @@ void SampleDistance::find_finest() {
     for (unsigned k = 0; k < tile_cells; ++k) {
         unsigned local = (tile_cells + k) >> above;
         while (!exists_[local >> 1]) local >>= 1;
-        const bool covered = local >= tile_cells && !covered_.empty() && covered_[k];
+        const bool covered = local >> tile_->depth != 0 && !covered_.empty() && covered_[k >> above];
         finest_[k] = covered ? std::uint16_t{0} : static_cast<std::uint16_t>(local);
     }
 }
@@ -267,7 +267,7 @@ void SampleDistance::add_anywhere(const glm::dvec3& n, float height) {
     for (const glm::dvec3* side : {&by_apex_, &by_left_, &by_right_})
         if (glm::dot(*side, n) < -on_side) return;
     const unsigned local = finest_cell(n);
-    if (local >= tile_cells && !covered_.empty() && covered_[local - tile_cells]) return;
+    if (local >> tile_->depth != 0 && !covered_.empty() && covered_[local - (1u << tile_->depth)]) return;
     add_in(local, n, height);
 }
 

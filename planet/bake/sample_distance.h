@@ -22,8 +22,8 @@ class SampleDistance {
   public:
     /// Begins a tile. All arguments must outlive the last add().
     /// @param tile heights, undulations and root; @param lattice its normals and positions
-    /// @param exists by local index @param covered by position at relative level 12, 1 where a tile below has the
-    /// surface; empty: nowhere
+    /// @param exists by local index @param covered by position at the tile's relative level `depth`, 1 where a tile
+    /// below has the surface; empty: nowhere
     void start(const Placement& placement, const Tile& tile, const TileLattice& lattice,
                std::span<const std::uint8_t> exists, std::span<const std::uint8_t> covered);
 

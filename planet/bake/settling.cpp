@@ -113,7 +113,7 @@ void TileRecords::settle(std::span<const SideSteps> theirs, std::span<SideSteps>
         if (deviation[v] == 0) continue;
         if (inner) {
             deviation[v] = deviation_from_code(deviation_code(deviation[v]));
-            if (v >= counts[tile_levels - 1]) radius[v] = radius_from_code(radius_code(radius[v]));
+            if (v >= counts[static_cast<std::size_t>(depth) - 1]) radius[v] = radius_from_code(radius_code(radius[v]));
         }
         if (const std::size_t k = layout.side[v]; k != none) {
             mine[k] = steps_of(deviation[v], radius[v]);

@@ -24,11 +24,12 @@ void report_above(const FrontierTile& tile, float min_height, float max_height) 
     above.tile.max_height = std::max(above.tile.max_height, max_height);
     const SideSteps steps = tile.steps(0);  // the root's split side is the first of the side cells
     if (steps.deviation == 0) return;       // does not exist
-    const std::size_t place = tile.root.bits() & (tile_cells - 1);
+    const unsigned end = 1u << above.tile.depth;
+    const unsigned place = static_cast<unsigned>(tile.root.bits()) & (end - 1);
     const float deviation = deviation_from_code(steps.deviation), radius = radius_from_code(steps.radius);
     above.tile.child_deviation[place] = deviation;
     above.tile.child_radius[place] = radius;
-    const unsigned parent = static_cast<unsigned>(tile_cells | place) >> 1;
+    const unsigned parent = (end | place) >> 1;
     if (!above.exists[parent]) return;
     const std::size_t v = tile_layout().split_vertex[parent];
     TileRecords& records = *above.records;
@@ -49,23 +50,24 @@ std::unique_ptr<InnerTile> TileMaker::open(LocationCode root, InnerTile* above) 
     auto inner = std::make_unique<InnerTile>();
     Tile& tile = inner->tile;
     tile.root = root;
-    tile.depth = tile_levels;
+    tile.depth = scene_.plan.layers().depth(root.bisection_level());
+    const std::size_t cells = std::size_t{1} << tile.depth;
     inner->above = above;
     inner->records = std::make_unique<TileRecords>();
-    exists_.resize(tile_cells);
+    exists_.resize(cells);
     existence_.of_tile(root, exists_);
     inner->exists = exists_;
     timed(BakeStep::resampling, [&] { sample(tile, above); });
     timed(BakeStep::deviation, [&] {
         lattice_.set_positions(scene_.scale.placement, tile.height, tile.undulation, exists_);
-        find_lacks_below(root);
+        find_lacks_below(root, tile.depth);
         set_own(*inner->records, true);
         own_height_range(tile, exists_);
         measure_above();
     });
-    std::vector<std::uint8_t> has_tile_below(tile_cells);
+    std::vector<std::uint8_t> has_tile_below(cells);
     for (const LocationCode below : scene_.plan.below(root)) {
-        const std::size_t place = below.bits() & (tile_cells - 1);
+        const std::size_t place = below.bits() & (cells - 1);
         tile.child_exists.set(place);
         has_tile_below[place] = existence_(below);
     }
@@ -74,8 +76,8 @@ std::unique_ptr<InnerTile> TileMaker::open(LocationCode root, InnerTile* above) 
             resampling_.largest({scene_.field, scene_.scale.placement, tile, lattice_, exists_}, has_tile_below);
     });
     tile.deviation.assign(exists_.begin(), exists_.end());
-    tile.child_deviation.assign(tile_cells, 0);
-    tile.child_radius.assign(tile_cells, 0);
+    tile.child_deviation.assign(cells, 0);
+    tile.child_radius.assign(cells, 0);
     return inner;
 }
 
@@ -108,7 +110,8 @@ std::unique_ptr<FrontierTile> TileMaker::measure(LocationCode root, InnerTile* a
 
 std::unique_ptr<FrontierTile> TileMaker::enter_frontier(std::unique_ptr<InnerTile> inner,
                                                         std::vector<SideSteps> theirs) {
-    std::unique_ptr<FrontierTile> tile = frontier_tile(inner->tile.root, tile_levels, inner->above, std::move(theirs));
+    std::unique_ptr<FrontierTile> tile =
+        frontier_tile(inner->tile.root, inner->tile.depth, inner->above, std::move(theirs));
     tile->records = std::move(inner->records);
     tile->split_position = tile->records->position[3];
     tile->inner = std::move(inner);
@@ -133,8 +136,8 @@ std::vector<std::uint8_t> TileMaker::encode(FrontierTile& tile) {
         const TileLayout& layout = tile_layout();
         baked_.tile = std::move(tile.inner->tile);
         baked_.exists = std::move(tile.inner->exists);
-        baked_.tile.radius.resize(tile_cells);
-        for (std::size_t i = 1; i < tile_cells; ++i) {
+        baked_.tile.radius.resize(baked_.tile.deviation.size());
+        for (std::size_t i = 1; i < baked_.tile.deviation.size(); ++i) {
             baked_.tile.deviation[i] = tile.records->deviation[layout.split_vertex[i]];
             baked_.tile.radius[i] = tile.records->radius[layout.split_vertex[i]];
         }
@@ -201,7 +204,7 @@ void TileMaker::sample(Tile& tile, InnerTile* above) {
     scene_.field.heights(normals_, tile.height);
     quantize(tile.height);
     if (above) {
-        const auto& corner = tile_layout().corners[tile_cells | (tile.root.bits() & (tile_cells - 1))];
+        const auto& corner = tile_layout().corners[scene_.plan.layers().local_above(tile.root)];
         for (std::size_t v = 0; v < 3; ++v) tile.height[v] = above->tile.height[corner[v]];
     }
     if (scene_.scale.has_undulation) sample_undulations(tile, above);
@@ -243,20 +246,21 @@ void TileMaker::sample_undulations(Tile& tile, const InnerTile* above) {
         tile.undulation[v].m = N;
     }
     if (above) {
-        const auto& corner = tile_layout().corners[tile_cells | (tile.root.bits() & (tile_cells - 1))];
+        const auto& corner = tile_layout().corners[scene_.plan.layers().local_above(tile.root)];
         for (std::size_t v = 0; v < 3; ++v) tile.undulation[v] = above->tile.undulation[corner[v]];
     }
     interpolate_undulations(tile.root, tile.depth, tile.undulation);
 }
 
-void TileMaker::find_lacks_below(LocationCode root) {
+void TileMaker::find_lacks_below(LocationCode root, int depth) {
     const auto exists_below = [&](unsigned local) {
         const LocationCode below = cell_code(root, local);
         return scene_.plan.contains(below) && existence_(below);
     };
-    lacks_below_.resize(tile_cells / 2);
-    for (unsigned k = 0; k < tile_cells / 2; ++k)
-        lacks_below_[k] = !(exists_below(tile_cells + 2 * k) && exists_below(tile_cells + 2 * k + 1));
+    const unsigned cells = 1u << depth;
+    lacks_below_.resize(cells / 2);
+    for (unsigned k = 0; k < cells / 2; ++k)
+        lacks_below_[k] = !(exists_below(cells + 2 * k) && exists_below(cells + 2 * k + 1));
 }
 
 // The tile's own deviations and where its radii start, from lattice_ and exists_.
@@ -296,6 +300,7 @@ void TileMaker::find_cells_above(LocationCode root, InnerTile* above) {
            above_[same].cell == root.ancestor(static_cast<int>(same)))
         ++same;
     above_.erase(above_.begin() + static_cast<std::ptrdiff_t>(same), above_.end());
+    const TileLayers layers = scene_.plan.layers();
     std::vector<InnerTile*> holders;
     for (InnerTile* holder = above; holder; holder = holder->above) holders.push_back(holder);
     for (int level = static_cast<int>(same); level < levels; ++level) {
@@ -304,8 +309,8 @@ void TileMaker::find_cells_above(LocationCode root, InnerTile* above) {
             const Corners& up = above_.back().corners;
             c = child_corners(up, split_vertex(up), static_cast<int>(root.bits() >> (levels - level) & 1));
         }
-        InnerTile* holder = holders[holders.size() - 1 - static_cast<std::size_t>(level / tile_levels)];
-        const unsigned local = cell_in_tile(root.ancestor(level)).local;
+        InnerTile* holder = holders[holders.size() - 1 - layers.layer(level)];
+        const unsigned local = cell_in_tile(root.ancestor(level), layers).local;
         const auto& vertex = tile_layout().corners[local];
         const auto at = [&](std::size_t k, const glm::dvec3& n) {
             const std::size_t v = vertex[k];

@@ -67,7 +67,7 @@ class TileMaker {
     void quantize(std::span<float> heights) const;
     [[noreturn]] void refuse_heights(std::span<const float> heights) const;
     void sample_undulations(Tile& tile, const InnerTile* above);
-    void find_lacks_below(LocationCode root);
+    void find_lacks_below(LocationCode root, int depth);
     void set_own(TileRecords& records, bool inner);
     void measure_above();
     void find_cells_above(LocationCode root, InnerTile* above);

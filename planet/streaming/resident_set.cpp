@@ -17,26 +17,6 @@ std::size_t memory_of(const ResidentTile& tile) {
     return tile.tile->bytes() + (tile.support.size() + tile.below.size()) * sizeof(ResidentTile*);
 }
 
-unsigned position_of(LocationCode root) {
-    return static_cast<unsigned>(root.bits() & (tile_cells - 1));
-}
-
-LocationCode root_above(LocationCode root) {
-    return root.ancestor(root.bisection_level() - tile_levels);
-}
-
-// Whether the tile has cell i's record and the diamond of the cell's parent exists.
-bool may_open(const ResidentTile& tile, unsigned i) {
-    if (i >> tile.tile->depth || !tile.tile->is_stored(i)) return false;
-    if (i > 1) return tile.tile->is_open(i >> 1);
-    return !tile.above || tile.above->tile->is_open((tile_cells | position_of(tile.root)) >> 1);
-}
-
-// The local index, in the tile beside, of the other cell of a side cell's diamond.
-unsigned local_beyond(LocationCode root, unsigned i) {
-    return cell_in_tile(neighbor(cell_code(root, i))).local;
-}
-
 }  // namespace
 
 const PlacedTile* ResidentSet::tile(LocationCode root) const {
@@ -91,10 +71,11 @@ ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile, std::span<co
 void ResidentSet::tie(ResidentTile& tile, std::span<const LocationCode> support) {
     const LocationCode root = tile.root;
     if (root.bisection_level() > 0) {
-        tile.above = find(root_above(root));
+        tile.above = find(layers_.above(root));
         assert(tile.above);
-        tile.above->tile->set_child(position_of(root), tile.tile.get());
-        tile.above->below[tile.above->tile->child_bound.index(position_of(root))] = &tile;
+        const unsigned position = layers_.position(root);
+        tile.above->tile->set_child(position, tile.tile.get());
+        tile.above->below[tile.above->tile->child_bound.index(position)] = &tile;
         ++tile.above->children;
     }
     for (const Side side : sides) {
@@ -115,8 +96,9 @@ void ResidentSet::untie(ResidentTile& tile) {
         if (beside)
             std::replace(beside->beside.begin(), beside->beside.end(), &tile, static_cast<ResidentTile*>(nullptr));
     if (tile.above) {
-        tile.above->tile->set_child(position_of(tile.root), nullptr);
-        tile.above->below[tile.above->tile->child_bound.index(position_of(tile.root))] = nullptr;
+        const unsigned position = layers_.position(tile.root);
+        tile.above->tile->set_child(position, nullptr);
+        tile.above->below[tile.above->tile->child_bound.index(position)] = nullptr;
         --tile.above->children;
     }
     for (ResidentTile* const support : std::exchange(tile.support, {})) {
@@ -132,7 +114,7 @@ void ResidentSet::erase(LocationCode root) {
     assert(tile.children == 0);
     for (const SideCell& s : side_cells(tile.tile->depth)) {
         ResidentTile* const beside = tile.beside[static_cast<std::size_t>(s.side)];
-        if (beside && tile.tile->is_open(s.cell)) set_open(*beside, local_beyond(root, s.cell), false);
+        if (beside && tile.tile->is_open(s.cell)) set_open(*beside, local_across(s.cell), false);
     }
     for (int level = 0; level < tile_levels; ++level)
         if (std::exchange(tile.unsettled[static_cast<std::size_t>(level)], false))
@@ -174,14 +156,21 @@ void ResidentSet::settle_level(ResidentTile& tile, int level) {
         if (open == placed.is_open(i)) continue;
         set_open(tile, i, open);
         if (!tile.fresh) changes_.push_back(cell_code(placed.root, beyond));
-        if (level == tile_levels - 1) unsettle_below(tile, beyond);
+        if (level == placed.depth - 1) unsettle_below(tile, beyond);
     }
     for (const SideCell& s : side_cells(level + 1))
         if (s.cell >= first) settle_side(tile, s.cell, tile.beside[static_cast<std::size_t>(s.side)]);
 }
 
+// Whether the tile has the cell's record and the diamond of the cell's parent exists.
+bool ResidentSet::may_open(const ResidentTile& tile, unsigned local) const {
+    if (local >> tile.tile->depth || !tile.tile->is_stored(local)) return false;
+    if (local > 1) return tile.tile->is_open(local >> 1);
+    return !tile.above || tile.above->tile->is_open(layers_.local_above(tile.root) >> 1);
+}
+
 void ResidentSet::settle_side(ResidentTile& tile, unsigned local, ResidentTile* beside) {
-    const unsigned beyond = local_beyond(tile.root, local);
+    const unsigned beyond = local_across(local);
     const bool open = beside && may_open(tile, local) && may_open(*beside, beyond);
     if (open == tile.tile->is_open(local)) return;
     set_open(tile, local, open);
@@ -194,13 +183,14 @@ void ResidentSet::set_open(ResidentTile& tile, unsigned local, bool open) {
     const int below = relative_level(local) + 1;
     if (below < tile.tile->depth)
         unsettle(tile, below);
-    else if (below == tile_levels)
+    else
         unsettle_below(tile, local);
 }
 
 void ResidentSet::unsettle_below(ResidentTile& tile, unsigned local) {
     if (tile.children == 0) return;
-    for (unsigned k = 2 * local - tile_cells; k < 2 * local + 2 - tile_cells; ++k)
+    const unsigned first = tile.tile->position_below(2 * local);
+    for (const unsigned k : {first, first + 1})
         if (tile.tile->child_bound.has(k))
             if (ResidentTile* const below = tile.below[tile.tile->child_bound.index(k)]) unsettle(*below, 0);
 }
@@ -213,7 +203,7 @@ std::vector<LocationCode> ResidentSet::take_changes() {
     std::vector<LocationCode> outermost;
     for (const LocationCode cell : changes_) {
         if (outermost.empty() || !outermost.back().contains(cell)) outermost.push_back(cell);
-        if (ResidentTile* const tile = cell.bisection_level() % tile_levels == 0 ? find(cell) : nullptr)
+        if (ResidentTile* const tile = layers_.begin_at(cell.bisection_level()) ? find(cell) : nullptr)
             tile->fresh = false;
     }
     changes_.clear();
@@ -230,7 +220,7 @@ void ResidentSet::place(const Placement& placement, unsigned threads) {
     for (ResidentTile* const t : tiles) {
         bytes_ += memory_of(*t);
         if (t->above)
-            t->above->tile->set_child(position_of(t->root), t->tile.get());
+            t->above->tile->set_child(layers_.position(t->root), t->tile.get());
         else
             changes_.push_back(t->root);
     }

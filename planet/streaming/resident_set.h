@@ -37,6 +37,10 @@ struct ResidentTile {
 /// One thread's. While walks run over its tiles it may not be changed.
 class ResidentSet final : public TileSource {
   public:
+    /// @param layers of all tiles to come
+    explicit ResidentSet(TileLayers layers = {}) : layers_(layers) {}
+
+    TileLayers layers() const override { return layers_; }
     /// nullptr: not there.
     const PlacedTile* tile(LocationCode root) const override;
     ResidentTile* find(LocationCode root);
@@ -70,6 +74,9 @@ class ResidentSet final : public TileSource {
     void set_open(ResidentTile& tile, unsigned local, bool open);
     void unsettle_below(ResidentTile& tile, unsigned local);
 
+    bool may_open(const ResidentTile& tile, unsigned local) const;
+
+    TileLayers layers_;
     std::unordered_map<std::uint64_t, ResidentTile> tiles_;
     std::array<std::vector<ResidentTile*>, max_bisection_level> unsettled_;  // by bisection level
     std::vector<LocationCode> changes_;

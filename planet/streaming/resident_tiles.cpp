@@ -43,6 +43,7 @@ ResidentTiles::ResidentTiles(const TileCache& cache, const Placement& placement,
     : cache_(cache),
       reader_(reader ? *reader : cache),
       placement_(placement),
+      set_(cache.store().metadata().layers),
       loader_([this](LocationCode root) { return load(root); }, threads) {
     std::vector<TileRequest> faces;
     for (int face = 0; face < face_count; ++face) faces.push_back({LocationCode::face_root(face), 0});
@@ -83,8 +84,7 @@ void ResidentTiles::take_in(LoadedTile loaded) {
     }
     ++loaded_;
     // The tile above may have been dropped meanwhile: then nothing needs this one.
-    const int level = loaded.root.bisection_level();
-    if (level > 0 && !set_.find(loaded.root.ancestor(level - tile_levels))) return;
+    if (loaded.root.bisection_level() > 0 && !set_.find(layers().above(loaded.root))) return;
     set_.insert(std::move(loaded.tile), loaded.support);
 }
 

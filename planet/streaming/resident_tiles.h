@@ -53,6 +53,7 @@ class ResidentTiles final : public TileSource {
                   const TileReader* reader = nullptr);
     ~ResidentTiles() override;
 
+    TileLayers layers() const override { return set_.layers(); }
     /// Of those that are there.
     const PlacedTile* tile(LocationCode root) const override { return set_.tile(root); }
 

@@ -20,6 +20,7 @@ class StoreTiles final : public TileSource {
 
     ~StoreTiles() override;
 
+    TileLayers layers() const override { return tiles_->store().metadata().layers; }
     const PlacedTile* tile(LocationCode root) const override;
 
     std::size_t count() const;

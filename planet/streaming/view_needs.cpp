@@ -20,14 +20,6 @@ glm::dvec3 centre_of(const SplitRecord& record) {
     return {record.x, record.y, record.z};
 }
 
-LocationCode root_above(LocationCode root) {
-    return root.ancestor(root.bisection_level() - tile_levels);
-}
-
-unsigned position_of(LocationCode root) {
-    return static_cast<unsigned>(root.bits() & (tile_cells - 1));
-}
-
 }  // namespace
 
 void ViewNeeds::add(const SegmentView& view) {
@@ -39,7 +31,7 @@ void ViewNeeds::add(const SegmentView& view) {
 }
 
 void ViewNeeds::visit(ResidentTile& tile, unsigned i, bool in_segment) {
-    if (i >> tile_levels) return visit_below(tile, i - tile_cells, in_segment);
+    if (i >> tile.tile->depth) return visit_below(tile, tile.tile->position_below(i), in_segment);
     if (!tile.tile->has_child_below(i)) return;
     const SplitRecord record = opened(tile.tile->split[i]);
     if (!view_->test(record) || (!in_segment && hidden(record))) return;
@@ -56,7 +48,7 @@ void ViewNeeds::visit_below(ResidentTile& tile, unsigned position, bool in_segme
         follow(*below);
         visit(*below, 1, in_segment);
     } else {
-        miss(LocationCode(tile.root.bits() << tile_levels | position), bound);
+        miss(LocationCode(tile.root.bits() << tile.tile->depth | position), bound);
     }
 }
 
@@ -73,9 +65,10 @@ void ViewNeeds::hold(ResidentTile& tile) {
     if (tile.held == mark_) return;
     tile.held = mark_;
     if (tile.root.bisection_level() > 0) {
-        ResidentTile* const above = tile.tile ? tile.above : resident_.find(root_above(tile.root));
-        if (!above) return hold(root_above(tile.root));
-        const SplitRecord bound = above->tile->child_bound[position_of(tile.root)];
+        const TileLayers layers = resident_.layers();
+        ResidentTile* const above = tile.tile ? tile.above : resident_.find(layers.above(tile.root));
+        if (!above) return hold(layers.above(tile.root));
+        const SplitRecord bound = above->tile->child_bound[layers.position(tile.root)];
         if (!view_->test(bound)) return;
         follow(*above);
         if (!tile.tile) return miss(tile.root, bound);
@@ -85,9 +78,10 @@ void ViewNeeds::hold(ResidentTile& tile) {
 
 // A tile that is not there.
 void ViewNeeds::hold(LocationCode root) {
-    ResidentTile* const above = resident_.find(root_above(root));
-    if (!above) return hold(root_above(root));
-    const SplitRecord bound = above->tile->child_bound[position_of(root)];
+    const TileLayers layers = resident_.layers();
+    ResidentTile* const above = resident_.find(layers.above(root));
+    if (!above) return hold(layers.above(root));
+    const SplitRecord bound = above->tile->child_bound[layers.position(root)];
     if (view_->test(bound)) miss(root, bound);
 }
 

@@ -476,7 +476,7 @@ TEST(SideCellsAcross, AreTheOtherCellsOfTheirDiamonds) {
     const auto sides = side_cells(tile_levels);
     for (const LocationCode tile : some_tiles())
         for (std::size_t k = 0; k < sides.size(); ++k) {
-            const CellInTile across = cell_in_tile(neighbor(cell_code(tile, sides[k].cell)));
+            const CellInTile across = cell_in_tile(neighbor(cell_code(tile, sides[k].cell)), {});
             ASSERT_EQ(across.root, neighbor(tile, sides[k].side));
             ASSERT_EQ(across.local, sides[side_cells_across()[k]].cell);
         }

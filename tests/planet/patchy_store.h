@@ -45,8 +45,9 @@ class PatchyField final : public ElevationField {
     BumpyField bumps_{4e5, {glm::dvec3(1, 0, 0), 0}, 4e5};
 };
 
-inline BakeOptions patchy_options() {
+inline BakeOptions patchy_options(int first_tile_level = 12) {
     BakeOptions o;
+    o.first_tile_level = first_tile_level;
     o.undulation = bumpy_undulation;
     return o;
 }
@@ -98,10 +99,13 @@ inline std::uint64_t hash_of(const TileSource& tiles, const SplitTest& test) {
     return h;
 }
 
-/// A store of PatchyField, baked once.
-inline const ElevationStore& patchy_store() {
-    static const ElevationStore baked = bake_in_memory(PatchyField(), patchy_options());
-    return baked;
+/// A store of PatchyField, baked once for each level at which tiles below the faces may begin.
+inline const ElevationStore& patchy_store(int first_tile_level = 12) {
+    static std::map<int, ElevationStore> baked;
+    const auto found = baked.find(first_tile_level);
+    if (found != baked.end()) return found->second;
+    return baked.emplace(first_tile_level, bake_in_memory(PatchyField(), patchy_options(first_tile_level)))
+        .first->second;
 }
 
 inline SegmentView view_from(const glm::dvec3& towards, double height, double K) {

@@ -51,7 +51,7 @@ PlanetMesh within(PlanetLattice& lattice, double max_deviation) {
 void expect_own_deviations(const ElevationStore& store, const Surface& surface) {
     PlanetLattice lattice(store);
     for (const auto& [cell, s] : surface.splits) {
-        const auto [root, local] = cell_in_tile(cell);
+        const auto [root, local] = cell_in_tile(cell, store.metadata().layers);
         const double own = static_cast<double>(lattice.own_deviation(*lattice.tile(root), local));
         ASSERT_GE(own, s.own) << to_string(cell);
         ASSERT_LE(own, s.own * (1 + 3e-7) + 2e-8) << to_string(cell);

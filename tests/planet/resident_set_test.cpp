@@ -51,9 +51,10 @@ TEST(PlacedTile, KnowsWhereTilesAreBelow) {
         const PlacedTile p(tile, Placement{});
         EXPECT_EQ(p.child_bound.empty(), tile.child_exists.none());
         for (unsigned k = 0; k < tile_cells; ++k) ASSERT_EQ(p.child_bound.has(k), tile.child_exists[k]);
-        std::vector<bool> below(2 * tile_cells);
-        for (unsigned i = 2 * tile_cells - 1; i >= 1; --i) {
-            below[i] = i >= tile_cells ? tile.child_exists[i - tile_cells] : below[2 * i] || below[2 * i + 1];
+        const unsigned cells = 1u << tile.depth;
+        std::vector<bool> below(std::size_t{2} * cells);
+        for (unsigned i = 2 * cells - 1; i >= 1; --i) {
+            below[i] = i >= cells ? tile.child_exists[i - cells] : below[2 * i] || below[2 * i + 1];
             ASSERT_EQ(p.has_child_below(i), below[i]) << i;
         }
     }
@@ -77,7 +78,7 @@ class Existence {
         if (known != known_.end()) return known->second;
         bool exists = true;
         for (const LocationCode half : {cell, neighbor(cell)}) {
-            const auto [root, local] = cell_in_tile(half);
+            const auto [root, local] = cell_in_tile(half, set_.layers());
             const PlacedTile* tile = set_.tile(root);
             exists = exists && tile && !(local >> tile->depth) && tile->is_stored(local);
         }

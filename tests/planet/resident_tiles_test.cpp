@@ -88,9 +88,9 @@ double hidden_deviation(const ResidentTiles& tiles, const SplitTest& test) {
             SplitRecord s{};
             if (!(i >> t.depth)) {
                 s = t.split[i];
-            } else if (t.depth == tile_levels) {
+            } else {
                 const PlacedTile* below = tiles.tile(code_of(t, i));
-                s = below ? below->split[1] : t.child_bound[i - tile_cells];
+                s = below ? below->split[1] : t.child_bound[t.position_below(i)];
             }
             s.deviation = std::abs(s.deviation);
             if (test(s)) worst = std::max(worst, static_cast<double>(s.deviation));
