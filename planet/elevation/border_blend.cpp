@@ -1,7 +1,9 @@
 #include "planet/elevation/border_blend.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace planet {
 namespace {
@@ -90,6 +92,33 @@ void BorderBlend::gather(std::size_t index, const glm::dvec3& p, double& weights
     } else {
         gather(index + 1, p, weights, total);
         gather(static_cast<std::size_t>(node.right), p, weights, total);
+    }
+}
+
+// Whether a point of the node may be within its reach of any place in a ball.
+bool BorderBlend::may_reach(std::size_t index, const glm::dvec3& centre, double radius) const {
+    const Node& node = nodes_[index];
+    const double beyond = radius + clearance_;
+    if (glm::distance(centre, node.centre) - node.radius >= node.max_reach + beyond) return false;
+    if (node.right != 0)
+        return may_reach(index + 1, centre, radius) || may_reach(static_cast<std::size_t>(node.right), centre, radius);
+    const auto begin = points_.begin() + node.first;
+    return std::any_of(begin, begin + node.count,
+                       [&](const Point& q) { return glm::distance(centre, q.normal) < q.reach + beyond; });
+}
+
+void BorderBlend::add(std::span<const glm::dvec3> normals, std::span<double> corrections) const {
+    assert(corrections.size() == normals.size());
+    constexpr std::size_t few = 32;
+    if (nodes_.empty()) return;
+    for (std::size_t first = 0; first < normals.size(); first += few) {
+        const auto some = normals.subspan(first, std::min(few, normals.size() - first));
+        const glm::dvec3 centre = std::accumulate(some.begin(), some.end(), glm::dvec3(0)) / double(some.size());
+        double square = 0;
+        for (const glm::dvec3& n : some) square = std::max(square, glm::dot(n - centre, n - centre));
+        const bool is_number = centre.x + centre.y + centre.z == centre.x + centre.y + centre.z;
+        if (is_number && !may_reach(0, centre, std::sqrt(square) * (1 + 1e-9))) continue;
+        for (std::size_t i = 0; i < some.size(); ++i) corrections[first + i] += (*this)(some[i]);
     }
 }
 

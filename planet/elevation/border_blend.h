@@ -9,6 +9,7 @@
 // as one.
 
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace planet {
@@ -28,6 +29,9 @@ class BorderBlend {
 
     /// Metres to add to the coarser field at a unit normal. 0 beyond the reach of every point.
     double operator()(const glm::dvec3& normal) const;
+    /// Adds to each correction, in metres, that at a unit normal; fast where neighbours in the span are so on the ground
+    /// and out of reach. Spans of the same size.
+    void add(std::span<const glm::dvec3> normals, std::span<double> corrections) const;
 
     std::size_t bytes() const { return sizeof *this + points_.size() * sizeof(Point) + nodes_.size() * sizeof(Node); }
 
@@ -42,6 +46,7 @@ class BorderBlend {
     };
 
     void build(int first, int count);
+    bool may_reach(std::size_t node, const glm::dvec3& centre, double radius) const;
     void find_nearest(std::size_t node, const glm::dvec3& p, double& least) const;
     void gather(std::size_t node, const glm::dvec3& p, double& weights, double& total) const;
 

@@ -10,10 +10,16 @@ std::string_view name_of(VerticalDatum datum) {
     return datum == VerticalDatum::ellipsoid ? "ellipsoid" : "egm96";
 }
 
-void ElevationField::sample_rows(const Cap& cap, const SampleRowVisitor& visit) const {
+SampleArea::SampleArea(const Corners& cell) : cap(cap_of(cell)) {
+    sides = {glm::cross(cell.left, cell.right), glm::cross(cell.right, cell.apex), glm::cross(cell.apex, cell.left)};
+    if (glm::dot(sides[0], cell.apex) < 0)
+        for (glm::dvec3& side : sides) side = -side;
+}
+
+void ElevationField::sample_rows(const SampleArea& area, const SampleRowVisitor& visit) const {
     std::vector<glm::dvec3> normals;
     std::vector<float> heights;
-    samples(cap, normals, heights);
+    samples(area.cap, normals, heights);
     if (!normals.empty()) visit(normals, heights);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // An elevation field answers heights at directions and says how fine it is where. Its vertical datum is part of it.
 
+#include <array>
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "planet/frames.h"
+#include "planet/octahedron/cap.h"
 
 namespace planet {
 
@@ -21,10 +23,16 @@ enum class VerticalDatum {
 /// "egm96" or "ellipsoid".
 std::string_view name_of(VerticalDatum datum);
 
-/// A cap on the sphere of geodetic normals.
-struct Cap {
-    glm::dvec3 centre{0, 0, 1};  ///< unit
-    double angle = 0;            ///< rad, 0..pi
+/// Where samples are asked for: in a cap or, in a cell, on the inner side of its three sides.
+struct SampleArea {
+    /* implicit */ SampleArea(const Cap& whole) : cap(whole) {}
+    explicit SampleArea(const Corners& cell);
+
+    Cap cap;  ///< holds the area
+    /// What is in the area has dot(side, n) >= -1e-15 for each. Shorter than 1; all 0: the whole cap is meant.
+    std::array<glm::dvec3, 3> sides{};
+
+    bool is_cell() const { return sides[0] != glm::dvec3(0); }
 };
 
 /// Normals and heights in metres, of the same size; good for the time of the call.
@@ -59,9 +67,9 @@ class ElevationField {
     /// lost. Fields without samples append nothing.
     virtual void samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const = 0;
 
-    /// Calls visit with runs of samples that lie next to each other in a row of a source: every sample in the cap once,
-    /// and some outside of it. Voids and samples that do not show are NaN. Faster than samples(), which copies.
-    virtual void sample_rows(const Cap& cap, const SampleRowVisitor& visit) const;
+    /// Calls visit with some hundreds of samples at a time, row by row of a source: every sample in the area once, and
+    /// some outside of it. Voids and samples that do not show are NaN. Faster than samples(), which copies.
+    virtual void sample_rows(const SampleArea& area, const SampleRowVisitor& visit) const;
 
     virtual std::vector<SourceInfo> sources() const = 0;
 

@@ -38,12 +38,19 @@ LayeredField::LayeredField(std::vector<std::shared_ptr<const ElevationField>> la
 void LayeredField::to_common_datum(const ElevationField& layer, std::span<const glm::dvec3> normals,
                                    std::span<float> h) const {
     if (layer.datum() == datum_) return;
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        if (std::isnan(h[i])) continue;
-        const double height = static_cast<double>(h[i]);
-        const GeoidUndulation N = geoid_(normals[i]);
-        h[i] = static_cast<float>(datum_ == VerticalDatum::ellipsoid ? (OrthometricHeight{height} + N).m
-                                                                     : (EllipsoidalHeight{height} - N).m);
+    constexpr std::size_t few = 256;
+    GeoidUndulation undulation[few];
+    for (std::size_t first = 0; first < normals.size(); first += few) {
+        const std::size_t n = std::min(few, normals.size() - first);
+        const std::span<float> some = h.subspan(first, n);
+        if (std::all_of(some.begin(), some.end(), [](float v) { return std::isnan(v); })) continue;
+        geoid_(normals.subspan(first, n), {undulation, n});
+        for (std::size_t i = 0; i < n; ++i) {
+            const double height = static_cast<double>(some[i]);
+            some[i] =
+                static_cast<float>(datum_ == VerticalDatum::ellipsoid ? (OrthometricHeight{height} + undulation[i]).m
+                                                                      : (EllipsoidalHeight{height} - undulation[i]).m);
+        }
     }
 }
 
@@ -210,19 +217,19 @@ void LayeredField::hide_covered(std::size_t layer, std::span<const std::size_t> 
         for (std::size_t k = 0; k < h.size(); ++k) h[k] = static_cast<float>(static_cast<double>(h[k]) + correction[k]);
 }
 
-void LayeredField::sample_rows(const Cap& cap, const SampleRowVisitor& visit) const {
+void LayeredField::sample_rows(const SampleArea& area, const SampleRowVisitor& visit) const {
     std::vector<float> shown;
     for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
         std::vector<std::size_t> higher;  // that may cover samples, or whose blend may change them
         for (std::size_t i = layers_.size(); i-- > layer + 1;) {
-            const Cap wider{cap.centre, cap.angle + 2 * std::asin(std::min(1.0, 0.5 * reaches_[i]))};
+            const Cap wider{area.cap.centre, area.cap.angle + 2 * std::asin(std::min(1.0, 0.5 * reaches_[i]))};
             if (std::isfinite(layers_[i]->spacing(wider))) higher.push_back(i);
         }
         if (higher.empty() && layers_[layer]->datum() == datum_) {
-            layers_[layer]->sample_rows(cap, visit);
+            layers_[layer]->sample_rows(area, visit);
             continue;
         }
-        layers_[layer]->sample_rows(cap, [&](std::span<const glm::dvec3> normals, std::span<const float> heights) {
+        layers_[layer]->sample_rows(area, [&](std::span<const glm::dvec3> normals, std::span<const float> heights) {
             shown.assign(heights.begin(), heights.end());
             hide_covered(layer, higher, normals, shown);
             visit(normals, shown);

@@ -21,8 +21,9 @@ namespace planet {
 /// at the ones around.
 class LayeredField : public ElevationField {
   public:
-    /// The geoid above the ellipsoid at a unit normal. Must be safe from several threads.
-    using GeoidFunction = std::function<GeoidUndulation(const glm::dvec3&)>;
+    /// The geoid above the ellipsoid at unit normals, e.g. Geoid::undulations; spans of the same size. Must be safe from
+    /// several threads.
+    using GeoidFunction = std::function<void(std::span<const glm::dvec3>, std::span<GeoidUndulation>)>;
 
     /// @param layers   lowest first; at least one
     /// @param datum    what all heights are turned into
@@ -42,7 +43,7 @@ class LayeredField : public ElevationField {
     double spacing(const Cap& cap) const override;
     /// Samples that a higher layer covers are left out; those in a blend are as blended.
     void samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const override;
-    void sample_rows(const Cap& cap, const SampleRowVisitor& visit) const override;
+    void sample_rows(const SampleArea& area, const SampleRowVisitor& visit) const override;
     /// Lowest first, each with its own datum.
     std::vector<SourceInfo> sources() const override;
 

@@ -112,26 +112,34 @@ double RasterField::spacing(const Cap& cap) const {
     return least;
 }
 
-void RasterField::sample_rows(const Cap& cap, const SampleRowVisitor& visit) const {
-    const double least_cosine = std::cos(std::min(cap.angle, std::numbers::pi));
+// Rows in a small area are short: several at a time are given away.
+void RasterField::sample_rows(const SampleArea& area, const SampleRowVisitor& visit) const {
     const int size = survey_.block_size;
+    const std::size_t most = 256 + static_cast<std::size_t>(size);
     SampleCursor cursor(*samples_);
-    std::vector<glm::dvec3> normals(static_cast<std::size_t>(size));
-    std::vector<float> heights(static_cast<std::size_t>(size));
-    blocks_.visit(cap, [&](int i, int j, double) {
+    std::vector<glm::dvec3> normals(most);
+    std::vector<float> heights(most);
+    std::size_t held = 0;
+    const auto give = [&] {
+        if (held > 0) visit({normals.data(), held}, {heights.data(), held});
+        held = 0;
+    };
+    blocks_.visit(area.cap, [&](int i, int j, double) {
         const int last_column = std::min((i + 1) * size, survey_.columns);
         const int last_row = std::min((j + 1) * size, raster().height);
-        const SampleMap::RowsInCap in_cap(map_, i * size, last_column - i * size, cap.centre, least_cosine);
+        const SampleMap::RowsInArea in_area(map_, i * size, last_column - i * size, area);
         for (int row = j * size; row < last_row; ++row) {
-            const auto [first, last] = in_cap.find(row);
-            if (first == last) continue;
+            const auto [first, last] = in_area.find(row);
             const auto n = static_cast<std::size_t>(last - first);
-            map_.normals_of_row(i * size + first, row, {normals.data(), n});
-            heights_of_row(cursor, i * size + first, row, {heights.data(), n});
-            visit({normals.data(), n}, {heights.data(), n});
+            if (n == 0) continue;
+            if (held + n > most) give();
+            map_.normals_of_row(i * size + first, row, {normals.data() + held, n});
+            heights_of_row(cursor, i * size + first, row, {heights.data() + held, n});
+            held += n;
         }
         return std::numeric_limits<double>::infinity();
     });
+    give();
 }
 
 // A row may lie in several views.

@@ -31,7 +31,7 @@ class RasterField : public ElevationField {
     /// near a pole) the shorter spacing counts as at least a quarter of the longer one.
     double spacing(const Cap& cap) const override;
     void samples(const Cap& cap, std::vector<glm::dvec3>& normals, std::vector<float>& heights) const override;
-    void sample_rows(const Cap& cap, const SampleRowVisitor& visit) const override;
+    void sample_rows(const SampleArea& area, const SampleRowVisitor& visit) const override;
     std::vector<SourceInfo> sources() const override;
     void border(const Cap& cap, std::size_t every, std::vector<glm::dvec3>& normals) const override;
     std::size_t border_size() const override { return 2 * survey_.border_sides; }

@@ -1,6 +1,7 @@
 #include "planet/elevation/raster_surface.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <type_traits>
 
@@ -41,6 +42,64 @@ bool plain(const Four& a, const Four& b, const Four& c, const Four& d, std::int1
 }
 bool plain(const Four& a, const Four& b, const Four& c, const Four& d, float) {
     return std::isfinite(sum((a + b) + (c + d)));  // an infinity or NaN stays one
+}
+
+// Eight places at once, one a lane: the arithmetic of one place, operation by operation, so the same bits.
+constexpr std::size_t lanes = 8;
+using Floats = float __attribute__((vector_size(4 * lanes)));
+using Ints = std::int32_t __attribute__((vector_size(4 * lanes)));
+using Doubles = double __attribute__((vector_size(8 * lanes)));
+using Longs = std::int64_t __attribute__((vector_size(8 * lanes)));
+using PlaceRow = std::array<Floats, 4>;  // by column: samples beside the places
+
+template <class Vector, class Read>
+Vector each_lane(Read read) {
+    return Vector{read(0), read(1), read(2), read(3), read(4), read(5), read(6), read(7)};
+}
+
+PlaceRow load_row(const std::array<const std::int16_t*, lanes>& first, std::ptrdiff_t along) {
+    const Longs four = each_lane<Longs>([&](std::size_t w) {
+        std::int64_t samples;
+        std::memcpy(&samples, first[w] + along, sizeof samples);
+        return samples;
+    });
+    const auto halves = std::bit_cast<std::array<Ints, 2>>(four);
+    const Ints low = __builtin_shufflevector(halves[0], halves[1], 0, 2, 4, 6, 8, 10, 12, 14);
+    const Ints high = __builtin_shufflevector(halves[0], halves[1], 1, 3, 5, 7, 9, 11, 13, 15);
+    const auto number = [](Ints whole) { return __builtin_convertvector(whole, Floats); };
+    return {number(low << 16 >> 16), number(low >> 16), number(high << 16 >> 16), number(high >> 16)};
+}
+PlaceRow load_row(const std::array<const float*, lanes>& first, std::ptrdiff_t along) {
+    PlaceRow row;
+    for (std::ptrdiff_t i = 0; i < 4; ++i)
+        row[static_cast<std::size_t>(i)] = each_lane<Floats>([&](std::size_t w) { return first[w][along + i]; });
+    return row;
+}
+
+PlaceRow weights(const Floats& t) {
+    const Floats u = 1 - t;
+    return {-0.5f * t * u * u, 1 - t * t * (2.5f - 1.5f * t), 1 - u * u * (2.5f - 1.5f * u), -0.5f * u * t * t};
+}
+
+// By lane, whether 16 samples are all plain heights: plain() of one place.
+Ints plain(const std::array<PlaceRow, 4>& r, std::int16_t) {
+    Floats least = r[0][0];
+    for (const PlaceRow& row : r)
+        for (const Floats& f : row) least = f < least ? f : least;
+    return least > static_cast<float>(water_sample);
+}
+Ints plain(const std::array<PlaceRow, 4>& r, float) {
+    PlaceRow s;
+    for (std::size_t i = 0; i < 4; ++i) s[i] = (r[0][i] + r[1][i]) + (r[2][i] + r[3][i]);
+    const Floats all = (s[0] + s[1]) + (s[2] + s[3]);
+    constexpr float most = std::numeric_limits<float>::max();
+    return (all >= -most) & (all <= most);
+}
+
+bool all_of(const Longs& mask) {
+    std::int64_t all = -1;
+    for (std::size_t w = 0; w < lanes; ++w) all &= mask[w];
+    return all != 0;
 }
 
 // Central, one-sided or no difference; NaN marks a missing neighbour.
@@ -191,18 +250,60 @@ bool RasterSurface::is_inside(glm::dvec2 at) const {
     return at.y >= -rim && at.y <= height_ - 1 + rim && at.x >= -beyond && at.x <= width_ - 1 + beyond;
 }
 
-void RasterSurface::heights(SampleCursor& cursor, std::span<const glm::dvec2> at, std::span<float> out) const {
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        if (!is_inside(at[i])) {
-            out[i] = nan;
-            continue;
-        }
-        const int c = static_cast<int>(std::floor(at[i].x)), r = static_cast<int>(std::floor(at[i].y));
-        const SampleView& view = cursor.at(std::clamp(c, 0, width_ - 1), std::clamp(r, 0, height_ - 1));
-        const float v = view.shorts ? fast_or_careful(cursor, view.shorts, c, r, at[i])
-                                    : fast_or_careful(cursor, view.floats, c, r, at[i]);
-        out[i] = static_cast<float>(offset_ + scale_ * static_cast<double>(v));
+// False: they do not all lie in the cursor's view and away from what takes care at the raster's borders.
+template <class Sample>
+bool RasterSurface::heights_inside(const SampleCursor& cursor, const Sample* samples, const glm::dvec2* at,
+                                   float* out) const {
+    const SampleView& view = cursor.view();
+    const int first_column = std::max(view.core.column, 1),
+              end_column = std::min(view.core.column + view.core.columns, width_ - 2);
+    const int first_row = std::max(view.core.row, poles_.first == PoleRow::at_row ? 2 : 1),
+              end_row = std::min(view.core.row + view.core.rows, height_ - (poles_.last == PoleRow::at_row ? 3 : 2));
+    const Doubles x = each_lane<Doubles>([&](std::size_t w) { return at[w].x; }),
+                  y = each_lane<Doubles>([&](std::size_t w) { return at[w].y; });
+    if (!all_of((x >= double(first_column)) & (x < double(end_column)) & (y >= double(first_row)) &
+                (y < double(end_row))))
+        return false;
+    const Ints c = __builtin_convertvector(x, Ints), r = __builtin_convertvector(y, Ints);
+    const Floats s = __builtin_convertvector(x - __builtin_convertvector(c, Doubles), Floats),
+                 t = __builtin_convertvector(y - __builtin_convertvector(r, Doubles), Floats);
+    std::array<const Sample*, lanes> first;
+    for (std::size_t w = 0; w < lanes; ++w) first[w] = samples + view.index(c[w] - 1, r[w] - 1);
+    std::array<PlaceRow, 4> rows;
+    for (std::size_t j = 0; j < 4; ++j) rows[j] = load_row(first, static_cast<std::ptrdiff_t>(j) * view.window.columns);
+    const PlaceRow by_x = weights(s), by_y = weights(t);
+    PlaceRow column;
+    for (std::size_t i = 0; i < 4; ++i)
+        column[i] =
+            by_x[i] * ((by_y[0] * rows[0][i] + by_y[1] * rows[1][i]) + (by_y[2] * rows[2][i] + by_y[3] * rows[3][i]));
+    const Floats h = (column[0] + column[1]) + (column[2] + column[3]);
+    const Ints is_plain = plain(rows, Sample{});
+    for (std::size_t w = 0; w < lanes; ++w) {
+        const float v = is_plain[w] ? h[w] : careful(cursor, c[w], r[w], s[w], t[w]);
+        out[w] = static_cast<float>(offset_ + scale_ * static_cast<double>(v));
     }
+    return true;
+}
+
+float RasterSurface::height(SampleCursor& cursor, glm::dvec2 at) const {
+    if (!is_inside(at)) return nan;
+    const int c = static_cast<int>(std::floor(at.x)), r = static_cast<int>(std::floor(at.y));
+    const SampleView& view = cursor.at(std::clamp(c, 0, width_ - 1), std::clamp(r, 0, height_ - 1));
+    const float v =
+        view.shorts ? fast_or_careful(cursor, view.shorts, c, r, at) : fast_or_careful(cursor, view.floats, c, r, at);
+    return static_cast<float>(offset_ + scale_ * static_cast<double>(v));
+}
+
+void RasterSurface::heights(SampleCursor& cursor, std::span<const glm::dvec2> at, std::span<float> out) const {
+    std::size_t i = 0;
+    for (; i + lanes <= at.size(); i += lanes) {
+        const SampleView& view = cursor.view();
+        if (view.shorts ? heights_inside(cursor, view.shorts, &at[i], &out[i])
+                        : heights_inside(cursor, view.floats, &at[i], &out[i]))
+            continue;
+        for (std::size_t w = i; w < i + lanes; ++w) out[w] = height(cursor, at[w]);
+    }
+    for (; i < at.size(); ++i) out[i] = height(cursor, at[i]);
 }
 
 }  // namespace planet

@@ -61,6 +61,10 @@ class RasterSurface {
     float careful(const SampleCursor& cursor, int column, int row, float s, float t) const;
     float lead_to_pole(double row, float value) const;
 
+    float height(SampleCursor& cursor, glm::dvec2 sample) const;
+    /// Of as many as fit a register, where they are easy.
+    template <class Sample>
+    bool heights_inside(const SampleCursor& cursor, const Sample* samples, const glm::dvec2* at, float* out) const;
     template <class Sample>
     float fast_or_careful(const SampleCursor& cursor, const Sample* samples, int column, int row, glm::dvec2 at) const;
 

@@ -57,22 +57,27 @@ RegionalBlend::RegionalBlend(Make make, double reach, std::size_t bytes)
 void RegionalBlend::add(std::span<const glm::dvec3> normals, std::span<double> corrections) const {
     assert(corrections.size() == normals.size());
     if (whole_) {
-        for (std::size_t i = 0; i < normals.size(); ++i) corrections[i] += (*whole_)(normals[i]);
+        whole_->add(normals, corrections);
         return;
     }
     if (!make_) return;
     Region held;  // that `blend` is of
     std::shared_ptr<const BorderBlend> blend;
+    std::size_t first = 0;  // of those in the region held
+    const auto add_held = [&](std::size_t end) {
+        if (blend) blend->add(normals.subspan(first, end - first), corrections.subspan(first, end - first));
+        first = end;
+    };
     for (std::size_t i = 0; i < normals.size(); ++i) {
-        if (std::isnan(normals[i].x + normals[i].y + normals[i].z)) continue;
+        if (std::isnan(normals[i].x + normals[i].y + normals[i].z)) continue;  // changes nothing, in any region
         const Region region = region_of(normals[i], width_);
-        if (!(region == held)) {
-            blend = cache_->get(key_of(region),
-                                [&] { return make_(cap_of(region, width_, 0), cap_of(region, width_, reach_)); });
-            held = region;
-        }
-        corrections[i] += (*blend)(normals[i]);
+        if (region == held) continue;
+        add_held(i);
+        blend = cache_->get(key_of(region),
+                            [&] { return make_(cap_of(region, width_, 0), cap_of(region, width_, reach_)); });
+        held = region;
     }
+    add_held(normals.size());
 }
 
 }  // namespace planet

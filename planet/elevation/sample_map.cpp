@@ -5,38 +5,13 @@
 #include <numbers>
 
 #include "planet/frames.h"
+#include "planet/geodesy/angles.h"
 
 namespace planet {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t piece = 256;  // points at a time: their arrays stay in the first-level cache
-
-// Four-quadrant arctangent without branches. The rational approximation on [-tan(pi/8), tan(pi/8)] is that of Moshier's
-// Cephes library (atan.c, peak relative error 1.8e-16 on [0, 0.66]).
-inline double arctangent(double y, double x) {
-    const double a = std::abs(y), b = std::abs(x);
-    const double small = a < b ? a : b, large = a < b ? b : a;
-    const bool second = small > (std::numbers::sqrt2 - 1) * large;  // past 22.5 degrees: measure from 45
-    const double over = second ? small - large : small;
-    const double under = second ? small + large : large;
-    const double t = over / (under > 1e-300 ? under : 1e-300);
-    const double z = t * t;
-    const double p =
-        (((-8.750608600031904122785e-1 * z - 1.615753718733365076637e1) * z - 7.500855792314704667340e1) * z -
-         1.228866684490136173410e2) *
-            z -
-        6.485021904942025371773e1;
-    const double q =
-        ((((z + 2.485846490142306297962e1) * z + 1.650270098316988542046e2) * z + 4.328810604912902668951e2) * z +
-         4.853903996359136964868e2) *
-            z +
-        1.945506571482613964425e2;
-    double angle = t + t * (z * p / q) + (second ? std::numbers::pi / 4 : 0.0);
-    angle = a > b ? std::numbers::pi / 2 - angle : angle;
-    angle = std::copysign(1.0, x) < 0 ? std::numbers::pi - angle : angle;
-    return std::copysign(angle + 0 * (a + b), y);  // NaN and infinities give NaN
-}
 
 struct CubePoint {
     std::size_t face;
@@ -70,23 +45,6 @@ glm::dvec3 normal_from_degrees(glm::dvec2 longitude_latitude) {
 }
 
 }  // namespace
-
-void angles_from_normals(std::span<const glm::dvec3> normals, std::span<double> longitude, std::span<double> latitude) {
-    assert(longitude.size() == normals.size() && latitude.size() == normals.size());
-    double x[piece], y[piece], z[piece];
-    for (std::size_t first = 0; first < normals.size(); first += piece) {
-        const std::size_t n = std::min(piece, normals.size() - first);
-        for (std::size_t i = 0; i < n; ++i) {
-            x[i] = normals[first + i].x;
-            y[i] = normals[first + i].y;
-            z[i] = normals[first + i].z;
-        }
-        double* const lon = longitude.data() + first;
-        double* const lat = latitude.data() + first;
-        for (std::size_t i = 0; i < n; ++i) lon[i] = arctangent(y[i], x[i]);
-        for (std::size_t i = 0; i < n; ++i) lat[i] = arctangent(z[i], std::sqrt(x[i] * x[i] + y[i] * y[i]));
-    }
-}
 
 SampleMap::SampleMap(const RasterHeader& raster)
     : size_(raster.width, raster.height), grid_(raster.grid), transform_(raster.transform) {
@@ -156,31 +114,61 @@ void SampleMap::normals_of_row(int first_column, int row, std::span<glm::dvec3> 
     for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = {c * meridian[i].x, c * meridian[i].y, s};
 }
 
-SampleMap::RowsInCap::RowsInCap(const SampleMap& map, int first_column, int columns, const glm::dvec3& centre,
-                                double least_cosine)
-    : map_(map),
-      columns_(columns),
-      towards_pole_(centre.z),
-      least_cosine_(least_cosine - 1e-14),
-      most_along_(-std::numeric_limits<double>::infinity()) {
+SampleMap::RowsInArea::RowsInArea(const SampleMap& map, int first_column, int columns, const SampleArea& area)
+    : map_(map), first_column_(first_column), columns_(columns) {
     if (map.meridians_.empty()) return;
-    along_.reserve(static_cast<std::size_t>(columns));
-    for (int i = 0; i < columns; ++i) {
-        const glm::dvec2 meridian = map.meridians_[static_cast<std::size_t>(first_column + i)];
-        along_.push_back(meridian.x * centre.x + meridian.y * centre.y);
-        most_along_ = std::max(most_along_, along_.back());
+    along_.resize(bounds_.size() * static_cast<std::size_t>(columns));
+    if (area.is_cell())
+        for (const glm::dvec3& side : area.sides) add(side, 0);
+    else
+        add(area.cap.centre, std::cos(std::min(area.cap.angle, std::numbers::pi)));
+}
+
+void SampleMap::RowsInArea::add(const glm::dvec3& side, double least) {
+    constexpr double rounding = 1e-14;  // more than that of any product of two vectors of up to 1
+    const std::size_t first = bound_count_ * static_cast<std::size_t>(columns_);
+    Bound& bound = bounds_[bound_count_++];
+    bound = {.side = side, .least = least - rounding, .first = first};
+    const glm::dvec2* const meridian = map_.meridians_.data() + first_column_;
+    double* const along = along_.data() + first;
+    const auto columns = static_cast<std::size_t>(columns_);
+    for (std::size_t i = 0; i < columns; ++i) along[i] = meridian[i].x * side.x + meridian[i].y * side.y;
+    bound.most_along = *std::max_element(along, along + columns);
+    for (std::size_t i = 1; i < columns; ++i) {
+        bound.rises &= along[i - 1] <= along[i];
+        bound.falls &= along[i - 1] >= along[i];
     }
 }
 
-std::pair<int, int> SampleMap::RowsInCap::find(int row) const {
-    if (along_.empty()) return {0, columns_};
+std::pair<int, int> SampleMap::RowsInArea::find(int row) const {
+    std::pair<int, int> found{0, columns_};
+    if (bound_count_ == 0) return found;
     const glm::dvec2 parallel = map_.parallels_[static_cast<std::size_t>(row)];
-    const double rest = least_cosine_ - parallel.y * towards_pole_;
-    if (parallel.x * most_along_ < rest) return {0, 0};
-    int first = 0, last = columns_;
-    while (first < last && parallel.x * along_[static_cast<std::size_t>(first)] < rest) ++first;
-    while (last > first && parallel.x * along_[static_cast<std::size_t>(last - 1)] < rest) --last;
-    return {first, last};
+    const auto bounds = std::span(bounds_).first(bound_count_);
+    for (const Bound& bound : bounds)
+        if (parallel.x * bound.most_along < bound.least - parallel.y * bound.side.z) return {0, 0};
+    for (const Bound& bound : bounds) {
+        const auto [first, last] = find(bound, parallel);
+        found = {std::max(found.first, first), std::min(found.second, last)};
+    }
+    return found.first < found.second ? found : std::pair(0, 0);
+}
+
+// Nearly always the meridians' parts rise or fall along a row: then it is enough to count.
+std::pair<int, int> SampleMap::RowsInArea::find(const Bound& bound, const glm::dvec2& parallel) const {
+    const double* const along = along_.data() + bound.first;
+    const double rest = bound.least - parallel.y * bound.side.z;
+    const auto columns = static_cast<std::size_t>(columns_);
+    if (bound.rises || bound.falls) {
+        std::int64_t outside = 0;
+        for (std::size_t i = 0; i < columns; ++i) outside += parallel.x * along[i] < rest ? 1 : 0;
+        const int count = static_cast<int>(outside);
+        return bound.rises ? std::pair(count, columns_) : std::pair(0, columns_ - count);
+    }
+    std::size_t first = 0, last = columns;
+    while (first < last && parallel.x * along[first] < rest) ++first;
+    while (last > first && parallel.x * along[last - 1] < rest) --last;
+    return {static_cast<int>(first), static_cast<int>(last)};
 }
 
 void SampleMap::project_exactly(std::span<const glm::dvec3> normals, std::span<glm::dvec3> samples) const {

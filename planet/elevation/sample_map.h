@@ -1,6 +1,7 @@
 #pragma once
 // Between directions and the columns and rows of a raster, in any CRS.
 
+#include <array>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "planet/elevation/elevation_field.h"
 #include "planet/elevation/patch_map.h"
 #include "planet/elevation/raster.h"
 
@@ -33,20 +35,31 @@ class SampleMap {
     /// geographic and upright.
     void normals_of_row(int first_column, int row, std::span<glm::dvec3> normals) const;
 
-    /// For whole columns of rows that follow each other: which part of a row may be in a cap. Nothing outside of
+    /// For whole columns of rows that follow each other: which part of a row may be in an area. Nothing outside of
     /// [first, last) of what find() gives is in it.
-    class RowsInCap {
+    class RowsInArea {
       public:
-        RowsInCap(const SampleMap& map, int first_column, int columns, const glm::dvec3& centre, double least_cosine);
+        RowsInArea(const SampleMap& map, int first_column, int columns, const SampleArea& area);
         /// Counted from the first column.
         std::pair<int, int> find(int row) const;
 
       private:
+        // Of normals with dot(side, n) >= least.
+        struct Bound {
+            glm::dvec3 side;
+            double least;
+            std::size_t first = 0;            // in along_
+            double most_along = 0;            // over the columns
+            bool rises = true, falls = true;  // from column to column
+        };
+        std::pair<int, int> find(const Bound& bound, const glm::dvec2& parallel) const;
+        void add(const glm::dvec3& side, double least);
+
         const SampleMap& map_;
-        int columns_;
-        double towards_pole_, least_cosine_;
-        std::vector<double> along_;  // by column: its meridian's part of the cosine; empty: not upright
-        double most_along_;
+        int first_column_, columns_;
+        std::array<Bound, 3> bounds_;
+        std::size_t bound_count_ = 0;
+        std::vector<double> along_;  // by bound and column: the part of the product that the meridian gives
     };
 
   private:
@@ -66,9 +79,5 @@ class SampleMap {
     std::array<std::optional<PatchMap>, 6> from_cube_;
     std::optional<PatchMap> to_normal_;
 };
-
-/// Longitude and latitude of normals of any length > 0, in radians: atan2(y, x) and atan2(z, hypot(x, y)) within 4e-16,
-/// signs of zeros included, made to run on vector units. NaN gives NaN. All spans have the same size.
-void angles_from_normals(std::span<const glm::dvec3> normals, std::span<double> longitude, std::span<double> latitude);
 
 }  // namespace planet

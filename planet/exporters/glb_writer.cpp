@@ -49,16 +49,35 @@ Json extras_of(const MeshReference& reference, const glm::dvec3& root, const std
     return extras;
 }
 
+std::size_t padded(std::size_t size) {
+    return (size + 3) / 4 * 4;
+}
+
+// An array of the binary chunk, or the picture. They begin at multiples of 4 bytes.
+struct Part {
+    std::size_t offset = 0, bytes = 0;
+};
+
 // The numbers are glTF's: component types, targets and modes.
 struct Layout {
     glm::dvec3 root{0};
     glm::vec3 low{0}, high{0};  ///< of the offsets
     std::size_t vertices = 0, indices = 0;
     bool short_indices = false;
+    Part positions{}, corners{}, normals{}, uv{}, picture{};
+    std::size_t bytes = 0;
 
-    std::size_t position_bytes() const { return 12 * vertices; }
-    std::size_t index_bytes() const { return (short_indices ? 2 : 4) * indices; }
-    std::size_t bytes() const { return position_bytes() + index_bytes(); }
+    void place(const MeshLooks& looks) {
+        const auto put = [this](Part& part, std::size_t size) {
+            part = {bytes, size};
+            bytes += padded(size);
+        };
+        put(positions, 12 * vertices);
+        put(corners, (short_indices ? 2 : 4) * indices);
+        put(normals, 12 * looks.normals.size());
+        put(uv, 8 * looks.uv.size());
+        put(picture, looks.picture.size());
+    }
 };
 
 // The largest index of its type stands for "restart" and must not occur: 65,535 vertices are the most for 16 bits.
@@ -78,8 +97,48 @@ Layout layout_of(const SurfaceMesh& mesh) {
     return layout;
 }
 
-std::string json_of(const Layout& layout, const MeshReference& reference, const std::optional<MeshRounding>& rounding) {
-    const std::size_t positions = layout.position_bytes();
+// Arrays are named by the order in which they are added.
+class Arrays {
+  public:
+    std::size_t add(const Part& part, const char* type, std::size_t component, std::size_t count) {
+        constexpr int vertices = 34962, indices = 34963;
+        views_.push_back({{"buffer", 0}, {"byteOffset", part.offset}, {"byteLength", part.bytes}});
+        views_.back()["target"] = type == std::string_view("SCALAR") ? indices : vertices;
+        accessors_.push_back(
+            {{"bufferView", views_.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
+        return accessors_.size() - 1;
+    }
+    std::size_t add_picture(const Part& part) {
+        views_.push_back({{"buffer", 0}, {"byteOffset", part.offset}, {"byteLength", part.bytes}});
+        return views_.size() - 1;
+    }
+    Json& accessor(std::size_t i) { return accessors_[i]; }
+    void put(Json& gltf) const {
+        gltf["accessors"] = accessors_;
+        gltf["bufferViews"] = views_;
+    }
+
+  private:
+    Json accessors_ = Json::array(), views_ = Json::array();
+};
+
+void put_picture(Json& gltf, Json& surface, const Layout& layout, const MeshLooks& looks, Arrays& arrays) {
+    const bool png = std::string_view(looks.picture).starts_with("\x89PNG");
+    gltf["images"] = Json::array({{{"bufferView", arrays.add_picture(layout.picture)},
+                                   {"mimeType", png ? "image/png" : "image/jpeg"},
+                                   {"name", "drape"}}});
+    constexpr int clamp_to_edge = 33071, linear = 9729, linear_mipmap_linear = 9987;
+    gltf["samplers"] = Json::array({{{"magFilter", linear},
+                                     {"minFilter", linear_mipmap_linear},
+                                     {"wrapS", clamp_to_edge},
+                                     {"wrapT", clamp_to_edge}}});
+    gltf["textures"] = Json::array({{{"sampler", 0}, {"source", 0}}});
+    surface["baseColorTexture"] = {{"index", 0}};
+}
+
+std::string json_of(const Layout& layout, const MeshReference& reference, const std::optional<MeshRounding>& rounding,
+                    const MeshLooks& looks) {
+    constexpr std::size_t floats = 5126, shorts = 5123, ints = 5125;
     Json gltf{
         {"asset",
          {{"version", "2.0"}, {"generator", "Octaglobe"}, {"extras", extras_of(reference, layout.root, rounding)}}}};
@@ -88,29 +147,28 @@ std::string json_of(const Layout& layout, const MeshReference& reference, const 
     Json node{{"name", "terrain"}, {"mesh", 0}};
     if (layout.root != glm::dvec3(0)) node["translation"] = list(gltf_from_frame(layout.root));
     gltf["nodes"] = Json::array({node});
-    const Json primitive{{"attributes", {{"POSITION", 0}}}, {"indices", 1}, {"material", 0}, {"mode", 4}};
+    Arrays arrays;
+    Json attributes{{"POSITION", arrays.add(layout.positions, "VEC3", floats, layout.vertices)}};
+    arrays.accessor(0)["min"] = list(layout.low);
+    arrays.accessor(0)["max"] = list(layout.high);
+    const std::size_t corners =
+        arrays.add(layout.corners, "SCALAR", layout.short_indices ? shorts : ints, layout.indices);
+    if (layout.normals.bytes > 0) attributes["NORMAL"] = arrays.add(layout.normals, "VEC3", floats, layout.vertices);
+    if (layout.uv.bytes > 0) attributes["TEXCOORD_0"] = arrays.add(layout.uv, "VEC2", floats, layout.vertices);
+    const Json primitive{{"attributes", attributes}, {"indices", corners}, {"material", 0}, {"mode", 4}};
     gltf["meshes"] = Json::array({{{"name", "terrain"}, {"primitives", Json::array({primitive})}}});
-    const Json rough{{"baseColorFactor", {0.6, 0.6, 0.6, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
-    gltf["materials"] = Json::array({{{"name", "terrain"}, {"pbrMetallicRoughness", rough}}});
-    gltf["accessors"] = Json::array({{{"bufferView", 0},
-                                      {"componentType", 5126},
-                                      {"count", layout.vertices},
-                                      {"type", "VEC3"},
-                                      {"min", list(layout.low)},
-                                      {"max", list(layout.high)}},
-                                     {{"bufferView", 1},
-                                      {"componentType", layout.short_indices ? 5123 : 5125},
-                                      {"count", layout.indices},
-                                      {"type", "SCALAR"}}});
-    gltf["bufferViews"] = Json::array(
-        {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", positions}, {"target", 34962}},
-         {{"buffer", 0}, {"byteOffset", positions}, {"byteLength", layout.index_bytes()}, {"target", 34963}}});
-    gltf["buffers"] = Json::array({{{"byteLength", layout.bytes()}}});
+    const bool draped = layout.picture.bytes > 0;
+    const double grey = draped ? 1 : 0.6;
+    Json surface{{"baseColorFactor", {grey, grey, grey, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
+    if (draped) put_picture(gltf, surface, layout, looks, arrays);
+    gltf["materials"] = Json::array({{{"name", "terrain"}, {"pbrMetallicRoughness", surface}}});
+    arrays.put(gltf);
+    gltf["buffers"] = Json::array({{{"byteLength", layout.bytes}}});
     return gltf.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::size_t padded(std::size_t size) {
-    return (size + 3) / 4 * 4;
+void put_padding(BlockWriter& out, const Part& part) {
+    out.put_bytes(std::string_view("\0\0\0", padded(part.bytes) - part.bytes));
 }
 
 void put_offsets(BlockWriter& out, const SurfaceMesh& mesh, const glm::dvec3& origin) {
@@ -123,24 +181,35 @@ void put_indices(BlockWriter& out, const SurfaceMesh& mesh, bool short_indices) 
         for (const std::uint32_t i : t) out.put(static_cast<std::uint16_t>(i));
 }
 
+void put_looks(BlockWriter& out, const MeshLooks& looks, const Layout& layout) {
+    for (const glm::vec3& n : looks.normals) out.put(glm::vec3(n.x, n.z, 0 - n.y));
+    out.put_bytes(bytes_of(looks.uv));
+    out.put_bytes(looks.picture);
+    put_padding(out, layout.picture);
+}
+
 }  // namespace
 
 void write_glb(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference,
-               const std::optional<MeshRounding>& rounding) {
-    const Layout layout = layout_of(mesh);
-    std::string json = json_of(layout, reference, rounding);
+               const std::optional<MeshRounding>& rounding, const MeshLooks& looks) {
+    assert(looks.normals.empty() || looks.normals.size() == mesh.vertices.size());
+    assert(looks.uv.empty() || looks.uv.size() == mesh.vertices.size());
+    Layout layout = layout_of(mesh);
+    layout.place(looks);
+    std::string json = json_of(layout, reference, rounding, looks);
     json.resize(padded(json.size()), ' ');
-    const std::size_t binary = padded(layout.bytes()), size = 12 + 8 + json.size() + 8 + binary;
+    const std::size_t size = 12 + 8 + json.size() + 8 + layout.bytes;
     if (size > std::numeric_limits<std::uint32_t>::max()) refuse_size(".glb", "files below 4 GiB; .ply holds more");
     const auto word = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
     constexpr std::uint32_t magic = 0x46546c67, json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
     BlockWriter out(sink);
     for (const std::uint32_t w : {magic, 2u, word(size), word(json.size()), json_chunk}) out.put(w);
     out.put_bytes(json);
-    for (const std::uint32_t w : {word(binary), binary_chunk}) out.put(w);
+    for (const std::uint32_t w : {word(layout.bytes), binary_chunk}) out.put(w);
     put_offsets(out, mesh, layout.root);
     put_indices(out, mesh, layout.short_indices);
-    out.put_bytes(std::string_view("\0\0\0", binary - layout.bytes()));
+    put_padding(out, layout.corners);
+    put_looks(out, looks, layout);
     out.flush();
 }
 

@@ -50,16 +50,23 @@ MeshRounding rounding_bound(const glm::dvec3& low, const glm::dvec3& high, const
 MeshRounding round_to_format(SurfaceMesh& mesh, const MeshReference& reference, MeshFormat format,
                              double least_step = 0);
 
+/// What a .glb holds besides places and triangles; other formats leave it out.
+struct MeshLooks {
+    std::vector<glm::vec3> normals;  ///< by vertex, of unit length, in the frame; or empty
+    std::vector<glm::vec2> uv;       ///< by vertex, from the top left corner of the picture; or empty
+    std::string picture;             ///< the bytes of a PNG or JPEG file; or empty
+};
+
 /// Takes the bytes of a file in order, some 1 MB or more at a time. What it throws passes through write_mesh().
 using ByteSink = std::function<void(std::string_view)>;
 
 /// Writes triangles in the order of the mesh; levels and strips are not written. Needs no memory to speak of.
 /// @param mesh     as round_to_format() left it. Else each coordinate becomes the nearest one that the format holds.
-/// @param rounding what round_to_format() said: a .glb tells it.
+/// @param rounding what round_to_format() said: a .glb tells it. @param looks of a .glb
 /// Throws as check_frame() does, Error(bad_data) for a mesh without triangles, too large for the format, or (.glb, .stl)
 /// with coordinates beyond 1e30.
 void write_mesh(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference, MeshFormat format,
-                const std::optional<MeshRounding>& rounding = std::nullopt);
+                const std::optional<MeshRounding>& rounding = std::nullopt, const MeshLooks& looks = {});
 
 /// Reads a mesh file of the format that the path's ending names: what write_mesh() writes, and of what others write
 ///   .ply   ascii, little- and big-endian; any scalar types; polygons, as fans; other elements are skipped
@@ -71,5 +78,7 @@ void write_mesh(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReferen
 /// Throws Error(bad_data) for a file that is not there, damaged, has no triangles, coordinates that are not finite, or so
 /// many instances that it has more vertices than bytes. Memory stays within some 100 times the file's size.
 SurfaceMesh read_mesh(const std::string& path, MeshReference* reference = nullptr);
+/// The same of a file whose name may end in anything.
+SurfaceMesh read_mesh(const std::string& path, MeshFormat format, MeshReference* reference = nullptr);
 
 }  // namespace planet

@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little, "arrays are written as
 
 // Writers. The mesh has triangles, and the format holds the frame.
 void write_glb(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference,
-               const std::optional<MeshRounding>& rounding);
+               const std::optional<MeshRounding>& rounding, const MeshLooks& looks);
 void write_ply(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference);
 void write_obj(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference);
 void write_stl(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference);

@@ -58,7 +58,10 @@ void check(const SurfaceMesh& mesh) {
 }  // namespace
 
 SurfaceMesh read_mesh(const std::string& path, MeshReference* reference) {
-    const MeshFormat format = mesh_format(path);
+    return read_mesh(path, mesh_format(path), reference);
+}
+
+SurfaceMesh read_mesh(const std::string& path, MeshFormat format, MeshReference* reference) {
     try {
         ReadMesh found = read(bytes_of_file(path), format);
         check(found.mesh);

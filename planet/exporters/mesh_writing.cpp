@@ -102,12 +102,12 @@ MeshRounding round_to_format(SurfaceMesh& mesh, const MeshReference& reference, 
 }
 
 void write_mesh(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference, MeshFormat format,
-                const std::optional<MeshRounding>& rounding) {
+                const std::optional<MeshRounding>& rounding, const MeshLooks& looks) {
     check_frame(reference, format);
     check_triangles(mesh, format);
     switch (format) {
         case MeshFormat::glb:
-            return write_glb(sink, mesh, reference, rounding);
+            return write_glb(sink, mesh, reference, rounding, looks);
         case MeshFormat::ply:
             return write_ply(sink, mesh, reference);
         case MeshFormat::obj:

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "planet/error.h"
+#include "planet/geodesy/angles.h"
 
 namespace planet {
 namespace {
@@ -165,8 +166,21 @@ struct Geoid::Grid {
 
     void fill(std::istream& in);
     double at(double latitude, double longitude) const;
+    /// Many, faster: neighbours mostly lie in the same cell.
+    void at(std::span<const double> latitude, std::span<const double> longitude, GeoidUndulation* out) const;
+    /// Where the last bit of an angle decides between two cells, whose cubics differ by some mm: there the angles are
+    /// always those of the standard library, so that what is stored of the geoid does not depend on how it was asked.
+    bool is_beside_side(double latitude, double longitude) const;
 
   private:
+    /// The cubic of a cell.
+    struct Cell {
+        int left = -1, top = -1;
+        Terms t{};
+    };
+    Cell cell(int left, int top) const;
+    double in_cell(Cell& last, double latitude, double longitude) const;
+
     std::uint16_t* row(int y) { return samples.data() + static_cast<std::ptrdiff_t>(y + 1) * stride + 1; }
     const std::uint16_t* row(int y) const { return samples.data() + static_cast<std::ptrdiff_t>(y + 1) * stride + 1; }
     void extend_columns(int y);
@@ -203,7 +217,18 @@ void Geoid::Grid::fill(std::istream& in) {
     extend_columns(last + 1);
 }
 
-double Geoid::Grid::at(double latitude, double longitude) const {
+Geoid::Grid::Cell Geoid::Grid::cell(int left, int top) const {
+    const Fit& fit = top == 0 ? north : top == header.height - 2 ? south : inner;
+    Cell made{left, top, {}};
+    for (int k = 0; k < stencil_size; ++k) {
+        const double v = row(top + stencil[k].y)[left + stencil[k].x];
+        for (int i = 0; i < terms; ++i) made.t[i] += fit[k][i] * v;
+    }
+    return made;
+}
+
+// @param last the cell that was needed last, replaced if another one is
+double Geoid::Grid::in_cell(Cell& last, double latitude, double longitude) const {
     constexpr double pi = std::numbers::pi;
     if (!(std::abs(latitude) <= pi / 2) || !std::isfinite(longitude)) return std::numeric_limits<double>::quiet_NaN();
     if (std::abs(longitude) > pi) longitude = std::remainder(longitude, 2 * pi);
@@ -214,18 +239,28 @@ double Geoid::Grid::at(double latitude, double longitude) const {
     x -= column;
     y -= top;
     const int left = column < 0 ? column + header.width : column >= header.width ? column - header.width : column;
-    const bool at_south = top == header.height - 2;
-    const Fit& fit = top == 0 ? north : at_south ? south : inner;
-    if (at_south) y -= 1;  // that fit is about the pole
-
-    Terms t{};
-    for (int k = 0; k < stencil_size; ++k) {
-        const double v = row(top + stencil[k].y)[left + stencil[k].x];
-        for (int i = 0; i < terms; ++i) t[i] += fit[k][i] * v;
-    }
+    if (top == header.height - 2) y -= 1;  // that fit is about the pole
+    if (left != last.left || top != last.top) last = cell(left, top);
+    const Terms& t = last.t;
     const double grey = t[0] + x * (t[1] + x * (t[3] + x * t[6])) +
                         y * (t[2] + x * (t[4] + x * t[7]) + y * (t[5] + x * t[8] + y * t[9]));
     return header.offset + header.scale * grey;
+}
+
+bool Geoid::Grid::is_beside_side(double latitude, double longitude) const {
+    const auto is_whole = [](double cells) { return std::abs(cells - std::nearbyint(cells)) < 1e-9; };
+    return is_whole(longitude * (header.width / (2 * std::numbers::pi))) ||
+           is_whole(latitude * ((header.height - 1) / std::numbers::pi));
+}
+
+double Geoid::Grid::at(double latitude, double longitude) const {
+    Cell cell;
+    return in_cell(cell, latitude, longitude);
+}
+
+void Geoid::Grid::at(std::span<const double> latitude, std::span<const double> longitude, GeoidUndulation* out) const {
+    Cell cell;
+    for (std::size_t i = 0; i < latitude.size(); ++i) out[i].m = in_cell(cell, latitude[i], longitude[i]);
 }
 
 Geoid::Geoid(const std::filesystem::path& pgm) {
@@ -255,13 +290,26 @@ GeoidUndulation Geoid::undulation(double latitude, double longitude) const {
 }
 
 GeoidUndulation Geoid::undulation(const glm::dvec3& normal) const {
-    const double latitude = std::atan2(normal.z, std::sqrt(normal.x * normal.x + normal.y * normal.y));
-    return {grid_->at(latitude, std::atan2(normal.y, normal.x))};
+    GeoidUndulation out;
+    undulations({&normal, 1}, {&out, 1});
+    return out;
 }
 
 void Geoid::undulations(std::span<const glm::dvec3> normals, std::span<GeoidUndulation> out) const {
     assert(normals.size() == out.size());
-    for (std::size_t i = 0; i < normals.size(); ++i) out[i] = undulation(normals[i]);
+    constexpr std::size_t piece = 256;  // their angles stay in the first-level cache
+    double latitude[piece], longitude[piece];
+    for (std::size_t first = 0; first < normals.size(); first += piece) {
+        const std::size_t n = std::min(piece, normals.size() - first);
+        angles_from_normals(normals.subspan(first, n), {longitude, n}, {latitude, n});
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!grid_->is_beside_side(latitude[i], longitude[i])) continue;
+            const glm::dvec3& normal = normals[first + i];
+            latitude[i] = std::atan2(normal.z, std::sqrt(normal.x * normal.x + normal.y * normal.y));
+            longitude[i] = std::atan2(normal.y, normal.x);
+        }
+        grid_->at({latitude, n}, {longitude, n}, out.data() + first);
+    }
 }
 
 const std::string& Geoid::description() const {

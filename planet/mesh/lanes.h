@@ -2,10 +2,13 @@
 // As many doubles at a time as a register holds, for the loops over a tile's vertices and cells. Elementwise, so the
 // same bits for any width. For .cpp files: these types are no part of an interface.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
+#include <utility>
 
 namespace planet {
 
@@ -62,6 +65,34 @@ inline Lanes gather_lanes(At at) {
         return Lanes{at(0), at(1), at(2), at(3)};
     else
         return Lanes{at(0), at(1)};
+}
+
+/// Of numbers of which none is NaN, at least one.
+inline std::pair<float, float> least_and_most(std::span<const float> numbers) {
+    constexpr std::size_t width = 2 * lane_count;
+    typedef float Wide __attribute__((vector_size(width * sizeof(float))));
+    float least = numbers[0], most = numbers[0];
+    std::size_t i = 0;
+    if (numbers.size() >= width) {
+        Wide low, high;
+        std::memcpy(&low, numbers.data(), sizeof low);
+        high = low;
+        for (i = width; i + width <= numbers.size(); i += width) {
+            Wide next;
+            std::memcpy(&next, numbers.data() + i, sizeof next);
+            low = next < low ? next : low;
+            high = next > high ? next : high;
+        }
+        for (std::size_t w = 0; w < width; ++w) {
+            least = std::min(least, low[w]);
+            most = std::max(most, high[w]);
+        }
+    }
+    for (; i < numbers.size(); ++i) {
+        least = std::min(least, numbers[i]);
+        most = std::max(most, numbers[i]);
+    }
+    return {least, most};
 }
 
 /// Planes of cells, one a lane: see CellPlane.

@@ -21,6 +21,7 @@ std::vector<glm::dvec3> tile_normals(LocationCode root, int depth) {
 
 PlacedTile::PlacedTile(const Tile& tile, const Placement& placement)
     : root(tile.root), depth(tile.depth), height(tile.height), damaged(tile.damaged), stored_(tile.height.size()) {
+    child_bound.depth_ = depth;
     for (const GeoidUndulation N : tile.undulation) undulation_.push_back(static_cast<float>(N.m));
     for (std::size_t i = 1; i < tile.deviation.size(); ++i)
         stored_[tile_layout().split_vertex[i]] = {tile.deviation[i], tile.radius[i]};
@@ -37,12 +38,12 @@ void PlacedTile::note_children(const Tile& tile) {
             c.exists_[word] |= std::uint64_t{tile.child_exists[64 * word + bit]} << bit;
         children += static_cast<std::size_t>(std::popcount(c.exists_[word]));
     }
-    for (unsigned i = 127; i >= 1; --i) {
-        const bool any = i >= 64 ? c.exists_[i - 64] != 0 : c.has_below(2 * i) || c.has_below(2 * i + 1);
+    for (unsigned i = std::min(127u, (2u << depth) - 1); i >= 1; --i) {
+        const bool any = i >= 64 || i >> depth ? c.has_any_of_word(i) : c.has_below(2 * i) || c.has_below(2 * i + 1);
         c.any_[i >> 6] |= std::uint64_t{any} << (i & 63);
     }
     c.below_ = std::vector<ChildBounds::Below>(children);
-    for (unsigned k = 0; k < tile_cells; ++k)
+    for (unsigned k = 0; k < 1u << depth; ++k)
         if (c.has(k)) c.below_[c.index(k)].stored = {tile.child_deviation[k], tile.child_radius[k]};
 }
 
@@ -56,6 +57,7 @@ PlacedTile::PlacedTile(const PlacedTile& other, const Placement& placement)
     child_bound.exists_ = other.child_bound.exists_;
     child_bound.rank_ = other.child_bound.rank_;
     child_bound.any_ = other.child_bound.any_;
+    child_bound.depth_ = other.child_bound.depth_;
     child_bound.below_ = std::vector<ChildBounds::Below>(other.child_bound.below_.size());
     for (std::size_t v = 3; v < stored_.size(); ++v) stored_[v] = other.stored(v);
     for (std::size_t k = 0; k < child_bound.below_.size(); ++k)
@@ -115,13 +117,13 @@ void PlacedTile::bound_children(std::span<const glm::vec3> rounded, const Placem
     const TileLayout& layout = tile_layout();
     const Exaggeration exaggeration(placement.ellipsoid, placement.exaggeration);
     const double rounding = 2.0 * (1.0 + std::max(1.0, placement.exaggeration)) * (max_bisection_level + 1);
-    const int level = root.bisection_level() + tile_levels;
-    for (unsigned k = 0; k < tile_cells; ++k) {
+    const int level = root.bisection_level() + depth;
+    for (unsigned k = 0; k < 1u << depth; ++k) {
         if (!child_bound.has(k)) continue;
         ChildBounds::Below& below = child_bound.below_[child_bound.index(k)];
         below.bound = {};
         if (!(below.stored.deviation > 0)) continue;
-        const auto& corner = layout.corners[tile_cells + k];
+        const auto& corner = layout.corners[(1u << depth) + k];
         const glm::vec3 &a = rounded[corner[0]], &b = rounded[corner[1]];
         const glm::vec3 middle = 0.5f * (a + b);
         const double deviation = exaggeration.deviation(static_cast<double>(below.stored.deviation), level);
@@ -139,7 +141,7 @@ void PlacedTile::close() {
 const PlacedTile* PlacedTile::child_at(const TileSource& source, unsigned k) const {
     const ChildBounds::Below& below = child_bound.below_[child_bound.index(k)];
     if (below.known.load(std::memory_order_acquire)) return below.tile.load(std::memory_order_relaxed);
-    const PlacedTile* tile = source.tile(LocationCode(root.bits() << tile_levels | k));
+    const PlacedTile* tile = source.tile(LocationCode(root.bits() << depth | k));
     below.tile.store(tile, std::memory_order_relaxed);
     below.known.store(true, std::memory_order_release);
     return tile;

@@ -55,23 +55,18 @@ class PlacedTile {
         std::vector<SplitRecord> by_vertex_;  // the root's corners have none
         const std::uint16_t* vertex_ = tile_layout().split_vertex.data();
     };
-    /// What is known of the tiles below, by position at relative level 12.
+    /// What is known of the tiles below, by position at the level where they begin.
     class ChildBounds {
       public:
         /// Whether the store has no tile below this one.
         bool empty() const { return below_.empty(); }
-        /// Whether the store has a tile below the cell at position k, 0..4095.
+        /// Whether the store has a tile below the cell at position k, 0..2^depth - 1.
         bool has(unsigned k) const { return (exists_[k >> 6] >> (k & 63) & 1) != 0; }
         /// A record that the root of that tile passes at most: where this one is not split, the cell is a leaf, and the
         /// tile need not be loaded to know it. Never split where there is none.
         SplitRecord operator[](unsigned k) const { return has(k) ? below_[index(k)].bound : SplitRecord{}; }
-        /// Whether the store has a tile below local cell i, i < 2 * tile_cells.
-        bool has_below(unsigned i) const {
-            if (i < 128) return (any_[i >> 6] >> (i & 63) & 1) != 0;
-            const int levels = tile_levels + 1 - static_cast<int>(std::bit_width(i));
-            const unsigned first = (i << levels) - tile_cells;
-            return (exists_[first >> 6] >> (first & 63) & ((std::uint64_t{1} << (1u << levels)) - 1)) != 0;
-        }
+        /// Whether the store has a tile below local cell i, i < 2^(depth + 1).
+        bool has_below(unsigned i) const { return i < 128 ? (any_[i >> 6] >> (i & 63) & 1) != 0 : has_any_of_word(i); }
         std::size_t size() const { return below_.size(); }
         /// How many tiles there are below before position k.
         std::size_t index(unsigned k) const {
@@ -81,6 +76,12 @@ class PlacedTile {
 
       private:
         friend class PlacedTile;
+        // Local cell i with at most 64 cells at the level where tiles begin.
+        bool has_any_of_word(unsigned i) const {
+            const int levels = depth_ + 1 - static_cast<int>(std::bit_width(i));
+            const unsigned first = (i << levels) - (1u << depth_);
+            return (exists_[first >> 6] >> (first & 63) << (64 - (1u << levels))) != 0;
+        }
         struct StoredRecord {
             float deviation = 0, radius = 0;  // metres, not exaggerated
         };
@@ -94,6 +95,7 @@ class PlacedTile {
         std::array<std::uint16_t, tile_cells / 64> rank_{};    // how many there are before each 64 bits
         std::array<std::uint64_t, 2> any_{};                   // bit i: has_below(i), for cells of levels 0 to 6
         std::vector<Below> below_;                             // those that exist, ascending
+        int depth_ = 0;                                        // the tile's
     };
 
     LocationCode root;
@@ -115,11 +117,12 @@ class PlacedTile {
     /// Closes every diamond.
     void close();
 
-    /// Whether the store has a tile below local cell i, i < 2 * tile_cells.
+    /// Whether the store has a tile below local cell i, i < 2^(depth + 1).
     bool has_child_below(unsigned i) const { return child_bound.has_below(i); }
 
-    /// The tile below the cell at relative level 12 and position k, or nullptr if there is none: asked of the source
-    /// once.
+    /// The position, among the cells where tiles below begin, of local cell i, 2^depth <= i < 2^(depth + 1).
+    unsigned position_below(unsigned i) const { return i - (1u << depth); }
+    /// The tile below the cell at position k, or nullptr if there is none: asked of the source once.
     const PlacedTile* child(const TileSource& source, unsigned k) const {
         return child_bound.has(k) ? child_at(source, k) : nullptr;
     }
@@ -157,7 +160,9 @@ std::vector<glm::dvec3> tile_normals(LocationCode root, int depth);
 class TileSource {
   public:
     virtual ~TileSource() = default;
-    /// The tile whose root is this cell, or nullptr if there is none. @param root bisection level a multiple of 12
+    /// Where they begin.
+    virtual TileLayers layers() const { return {}; }
+    /// The tile whose root is this cell, or nullptr if there is none. @param root of a level at which tiles begin
     virtual const PlacedTile* tile(LocationCode root) const = 0;
 };
 

@@ -48,14 +48,12 @@ class Walk {
 
     // Where the tile ends: a leaf, unless a tile below goes on.
     void below(const PlacedTile& t, unsigned i, unsigned state) {
-        if (t.depth == tile_levels) {
-            const PlacedTile* child = t.child(tiles_, i - tile_cells, test_);
-            if (child && test_(child->split[1])) {
-                sink_.tile(*child);
-                children(*child, 1, state);
-                sink_.tile(t);
-                return;
-            }
+        const PlacedTile* child = t.child(tiles_, t.position_below(i), test_);
+        if (child && test_(child->split[1])) {
+            sink_.tile(*child);
+            children(*child, 1, state);
+            sink_.tile(t);
+            return;
         }
         sink_.leaf(t, i, state);
     }

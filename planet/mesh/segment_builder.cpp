@@ -67,8 +67,9 @@ MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t v
     const GridPosition place = t->position[vertex];
     while (vertex < 3) {  // a corner: it splits a cell of a tile above
         if (t->root.bisection_level() == 0) return {};
-        const auto local = static_cast<std::size_t>(t->root.bits() & (tile_cells - 1)) | std::size_t{tile_cells};
-        t = tiles.tile(t->root.ancestor(t->root.bisection_level() - tile_levels));
+        const TileLayers layers = tiles.layers();
+        const unsigned local = layers.local_above(t->root);
+        t = tiles.tile(layers.above(t->root));
         if (t == nullptr) return {};
         vertex = layout.corners[local][vertex];
     }
@@ -146,17 +147,15 @@ int SegmentBuilder::find_in_children(const PlacedTile& t, unsigned i, int level)
 
 // Where the tile ends: a leaf, unless a tile below goes on.
 int SegmentBuilder::find_below(const PlacedTile& t, unsigned i, int level) {
-    if (t.depth == tile_levels) {
-        const PlacedTile* below = t.child(*tiles_, i - tile_cells, test_);
-        if (below && test_(below->split[1])) return find_in_children(*below, 1, level);
-    }
+    const PlacedTile* below = t.child(*tiles_, t.position_below(i), test_);
+    if (below && test_(below->split[1])) return find_in_children(*below, 1, level);
     return push(t, i, level);
 }
 
 /// Makes a segment of the uppermost leaves of the stack.
 void SegmentBuilder::finish(PlacedCell root, int leaves) {
     if (root.local >> root.tile->depth && leaves > 1)  // not a leaf: the tile below has its record
-        root = {root.tile->child(*tiles_, root.local - tile_cells), 1};
+        root = {root.tile->child(*tiles_, root.tile->position_below(root.local)), 1};
     BuiltSegment segment{.root = root,
                          .cell = root.code(),
                          .patch = patch_,
@@ -187,8 +186,12 @@ void SegmentBuilder::make(BuiltSegment& segment) {
     const int tile_level = t.root.bisection_level();
     segment.vertices = static_cast<std::uint32_t>(vertices_.size()) - segment.first_vertex;
     segment.indices = static_cast<std::uint32_t>(strip_.indices().size()) - segment.first_index;
-    segment.detailed = tile_level >= view_->detail_level ||
-                       (tile_level + tile_levels >= view_->detail_level && t.has_child_below(segment.root.local));
+    // Tiles below are there for what is finer than where they begin: nearly all of it is as fine as asked for, if that is
+    // at most a few levels more.
+    constexpr int few = 4;
+    const int end_level = tile_level + t.depth;
+    segment.detailed = end_level > view_->detail_level ||
+                       (end_level + few > view_->detail_level && t.has_child_below(segment.root.local));
     segment.damaged = damaged_;
     segment.slack = slack_.metres();
     segment.ratio_max = ratio_max_;
@@ -266,9 +269,10 @@ void SegmentBuilder::certify(const Leaf& leaf, bool whole_segment) {
     if (!(i >> t.depth)) {
         const SplitRecord s = t.split[i];
         certify(s, s.deviation > 0);
-    } else if (t.depth == tile_levels && !t.child_bound.empty()) {
-        const SplitRecord& bound = t.child_bound[i - tile_cells];
-        const PlacedTile* below = t.child(*tiles_, i - tile_cells, test_);
+    } else if (!t.child_bound.empty()) {
+        const unsigned k = t.position_below(i);
+        const SplitRecord& bound = t.child_bound[k];
+        const PlacedTile* below = t.child(*tiles_, k, test_);
         if (test_(bound)) {
             slack_.add(test_, bound);
             const SplitRecord s = below ? below->split[1] : bound;

@@ -78,8 +78,8 @@ class SegmentTree::Visit {
         const PlacedTile* t = above.tile;
         unsigned local = 2 * above.local + static_cast<unsigned>(n.cell.child_index());
         Slack slack(view_.test.eye);
-        if (local >> t->depth && t->depth == tile_levels && !t->child_bound.empty()) {
-            const unsigned k = local - tile_cells;
+        if (local >> t->depth && !t->child_bound.empty()) {
+            const unsigned k = t->position_below(local);
             slack.add(view_.test, t->child_bound[k]);
             if (const PlacedTile* below = t->child(tiles_, k, view_.test)) {
                 slack.add(view_.test, below->split[1]);

@@ -37,7 +37,7 @@ struct SegmentView {
     /// A segment is the largest cell within a patch of at most so many leaves, at least 1.
     int segment_leaves = 256;
     double radius_m = 6371008.8;  ///< of the planet
-    int detail_level = 24;        ///< bisection level, a multiple of 12; see Segment::detailed
+    int detail_level = 24;        ///< bisection level; see Segment::detailed
     /// No patch is of a finer bisection level: below, the lattice of normals would be finer than the data.
     int finest_patch_level = max_bisection_level;
     bool morph = false;  ///< make the stream of Segments::morphs()

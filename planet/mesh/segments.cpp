@@ -15,7 +15,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Finds a cell that is split in a mesh.
 PlacedCell find_split_cell(const TileSource& tiles, LocationCode cell) {
-    const int below = cell.bisection_level() % tile_levels;
+    const int below = cell.bisection_level() - tiles.layers().root_level(cell.bisection_level());
     const PlacedTile* tile = tiles.tile(cell.ancestor(cell.bisection_level() - below));
     assert(tile != nullptr);
     return {tile, static_cast<unsigned>(cell.bits() & ((1u << below) - 1)) | 1u << below};

@@ -24,7 +24,7 @@ struct Segment {
     std::uint32_t first_vertex, vertex_count, first_index, index_count;
     std::uint32_t leaves;
     std::uint32_t first_leaf;  ///< into leaf_levels(); has room for as many as there are indices
-    bool detailed;             ///< holds tiles rooted at SegmentView::detail_level or deeper
+    bool detailed;             ///< holds what is finer than SegmentView::detail_level
 };
 
 /// Strips and vertices of all segments in view, in Sierpinski order. Keeps its storage from one use to the next.

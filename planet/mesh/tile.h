@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planet/frames.h"
+#include "planet/mesh/tile_layers.h"
 #include "planet/mesh/tile_layout.h"
 #include "planet/octahedron/location_code.h"
 
@@ -17,7 +18,7 @@ namespace planet {
 /// diamond, the same bits from both cells of a side, so that "split iff deviation > 0 and |eye - m| < radius + K
 /// deviation" is nested: a vertex passes only if its parents pass, and any recursive walk is conforming.
 struct Tile {
-    LocationCode root;  ///< bisection level a multiple of 12
+    LocationCode root;  ///< of a level at which tiles begin (tile_layers.h)
     int depth = 0;      ///< 1..12: cells with local index < 2^depth can be split
     /// By vertex index, vertex_count[depth] of them, metres: the height above the store's datum (H for egm96).
     std::vector<float> height;
@@ -29,10 +30,10 @@ struct Tile {
     /// By local index, metres: every vertex below the diamond lies within it of the diamond's split vertex (true
     /// height).
     std::vector<float> radius;
-    /// Bit k: the cell at relative level 12 and position k has a tile of its own. Empty unless depth is 12.
+    /// Bit k: the cell at relative level `depth` and position k has a tile of its own.
     std::bitset<tile_cells> child_exists;
     /// By position k, metres: the saturated deviation and radius of the root's diamond of the tile below, known before
-    /// that tile is loaded; 0 where there is none. Empty like child_exists.
+    /// that tile is loaded; 0 where there is none. 2^depth of them, or empty where there are no tiles below.
     std::vector<float> child_deviation, child_radius;
     float min_height = 0, max_height = 0;  ///< over every finest vertex below, metres
     /// Largest |source sample - lattice| over the source samples in the tile's own cells, metres. A bound on

@@ -18,10 +18,11 @@ bool on_another_planet(const Raster& raster) {
 }  // namespace
 
 RasterFrame::RasterFrame(std::shared_ptr<const Raster> raster, MeshFrame frame, VerticalDatum datum,
-                         std::shared_ptr<const Geoid> geoid)
+                         std::shared_ptr<const Geoid> geoid, double exaggeration)
     : raster_(std::move(raster)),
       datum_(datum),
       geoid_(std::move(geoid)),
+      exaggeration_(exaggeration),
       affine_(frame == MeshFrame::source || raster_->plain) {
     reference_.frame = frame;
     if (raster_->plain) {
@@ -76,7 +77,7 @@ glm::dvec2 RasterFrame::metres_per_unit() const {
 }
 
 void RasterFrame::geodetic(std::span<const glm::dvec2> at, std::span<glm::dvec2> longitude_latitude) const {
-    for (std::size_t i = 0; i < at.size(); ++i) longitude_latitude[i] = raster_->grid.crs_from_sample(at[i]);
+    for (std::size_t i = 0; i < at.size(); ++i) longitude_latitude[i] = raster_->grid.crs_from_sample(at[i] + first_);
     if (!raster_->geographic()) raster_->transform->geodetic_from_crs(longitude_latitude);
 }
 
@@ -92,7 +93,7 @@ void RasterFrame::place(std::span<const glm::dvec2> at, std::span<const double> 
                         std::span<glm::vec3> up) const {
     if (affine_) {
         for (std::size_t i = 0; i < at.size(); ++i)
-            position[i] = glm::dvec3(raster_->grid.crs_from_sample(at[i]), height[i]);
+            position[i] = glm::dvec3(raster_->grid.crs_from_sample(at[i] + first_), exaggeration_ * height[i]);
         std::fill(up.begin(), up.end(), glm::vec3(0, 0, 1));
         return;
     }
@@ -102,13 +103,13 @@ void RasterFrame::place(std::span<const glm::dvec2> at, std::span<const double> 
         const double latitude = std::clamp(places[i].y, -90.0, 90.0) * degrees;
         const double longitude = places[i].x * degrees;
         if (reference_.frame == MeshFrame::utm) {
-            position[i] = in_utm(latitude, longitude, height[i]);
+            position[i] = in_utm(latitude, longitude, exaggeration_ * height[i]);
             if (!up.empty()) up[i] = {0, 0, 1};
             continue;
         }
         const glm::dvec3 n = normal_from_geodetic(latitude, longitude);
         const double N = datum_ == VerticalDatum::egm96 && geoid_ ? geoid_->undulation(latitude, longitude).m : 0;
-        const glm::dvec3 p = ecef_from_normal(wgs84, n, {height[i] + N});
+        const glm::dvec3 p = ecef_from_normal(wgs84, n, {exaggeration_ * height[i] + N});
         const bool enu = reference_.frame == MeshFrame::enu;
         position[i] = enu ? local_.enu_from_ecef(p) : p;
         if (!up.empty()) up[i] = glm::vec3(enu ? glm::transpose(local_.ecef_from_enu_rotation()) * n : n);

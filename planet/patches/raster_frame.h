@@ -18,10 +18,18 @@ class RasterFrame {
   public:
     /// @param datum of the raster's heights; source and utm keep them as they are, enu and ecef need heights above the
     ///        ellipsoid @param geoid for datum egm96 with enu and ecef; else may be null
+    /// @param exaggeration heights are multiplied by it, above 0; those above the geoid before they become ellipsoidal
     /// Heights of a raster on another planet are of no datum here, and it has no utm, enu or ecef: Error(bad_usage).
     /// A raster that is `plain` has its own coordinates in enu too, and no utm or ecef: Error(bad_usage).
     RasterFrame(std::shared_ptr<const Raster> raster, MeshFrame frame, VerticalDatum datum,
-                std::shared_ptr<const Geoid> geoid);
+                std::shared_ptr<const Geoid> geoid, double exaggeration = 1);
+
+    /// The same frame for a window of the raster: column and row count from its first sample. Places have the same bits.
+    RasterFrame window(glm::ivec2 first) const {
+        RasterFrame out(*this);
+        out.first_ += glm::dvec2(first);
+        return out;
+    }
 
     const MeshReference& reference() const { return reference_; }
     /// Whether x and y are affine in column and row, and up is z: deviations are those of the lattice.
@@ -29,7 +37,10 @@ class RasterFrame {
     /// Whether counter-clockwise in the lattice (column right, row up) is clockwise seen from above.
     bool mirrored() const { return raster_->grid.determinant() < 0; }
     /// Of x and y where they are affine.
-    const SampleGrid& grid() const { return raster_->grid; }
+    SampleGrid grid() const {
+        return {raster_->grid.crs_from_sample(first_), raster_->grid.per_column, raster_->grid.per_row};
+    }
+    double exaggeration() const { return exaggeration_; }
     /// Metres in a unit of x and of y, near the middle of the raster.
     glm::dvec2 metres_per_unit() const;
 
@@ -48,6 +59,8 @@ class RasterFrame {
     VerticalDatum datum_;
     std::shared_ptr<const Geoid> geoid_;
     MeshReference reference_;
+    double exaggeration_;
+    glm::dvec2 first_{0};  ///< of the window
     bool affine_;
     LocalFrame local_{wgs84, Geodetic{}};
     int zone_ = 0;

@@ -44,11 +44,12 @@ void check_store_file(const std::filesystem::path& path) {
     const Header h = read_header(path);
     if (big_endian(h, 68) != store_application_id) refuse(path, "an SQLite file, but not an elevation store");
     const std::uint32_t version = big_endian(h, 60);
-    if (version != store_format_version)
-        throw Error(Fault::bad_data, path.string(),
-                    "format version " + std::to_string(version) +
-                        (version > store_format_version ? " is newer than this program" : " is not known"),
-                    "version " + std::to_string(store_format_version));
+    if (version < oldest_store_format_version || version > store_format_version)
+        throw Error(
+            Fault::bad_data, path.string(),
+            "format version " + std::to_string(version) +
+                (version > store_format_version ? " is newer than this program" : " is not known"),
+            "version " + std::to_string(oldest_store_format_version) + " or " + std::to_string(store_format_version));
     const std::uint64_t page = (h[16] << 8 | h[17]) == 1 ? 65536u : static_cast<unsigned>(h[16] << 8 | h[17]);
     const std::uint64_t said = page * big_endian(h, 28), there = std::filesystem::file_size(path);
     if (there < said)
@@ -149,8 +150,9 @@ std::optional<Tile> ElevationStore::read(LocationCode root) const {
     }
     if (!open_->metadata.complete) return std::nullopt;
     if (root.bisection_level() == 0) open_->damaged(root, "it is missing");
-    const std::optional<Tile> parent = read(root.ancestor(root.bisection_level() - tile_levels));
-    if (parent && parent->child_exists[root.bits() & (tile_cells - 1)]) open_->damaged(root, "it is missing");
+    const TileLayers layers = open_->metadata.layers;
+    const std::optional<Tile> parent = read(layers.above(root));
+    if (parent && parent->child_exists[layers.position(root)]) open_->damaged(root, "it is missing");
     return std::nullopt;
 }
 
@@ -160,7 +162,7 @@ std::vector<LocationCode> ElevationStore::tiles() const {
     std::vector<LocationCode> found;
     while (codes.step()) {
         const auto bits = static_cast<std::uint64_t>(codes.integer(0));
-        if (!LocationCode::is_valid(bits) || LocationCode(bits).bisection_level() % tile_levels != 0 ||
+        if (!LocationCode::is_valid(bits) || !open_->metadata.layers.begin_at(LocationCode(bits).bisection_level()) ||
             LocationCode(bits).bisection_level() >= max_bisection_level)
             throw Error(Fault::bad_data, where(), "the row " + std::to_string(bits) + " is not a tile");
         found.emplace_back(bits);

@@ -17,7 +17,9 @@ namespace planet {
 
 class SqliteFile;
 
-inline constexpr int store_format_version = 2;
+inline constexpr int store_format_version = 3;
+/// The oldest that can be read: all its tiles begin at multiples of 12.
+inline constexpr int oldest_store_format_version = 2;
 
 /// The options of a bake that determine what is in its store. See BakeOptions.
 struct BakeSettings {
@@ -33,6 +35,7 @@ struct StoreMetadata {
     VerticalDatum datum = VerticalDatum::egm96;
     std::string undulation;  ///< what the datum's height above the ellipsoid was taken from; empty: 0 everywhere
     double quantum_m = 0.25;
+    TileLayers layers;     ///< where tiles begin
     int finest_level = 0;  ///< bisection level of the finest cells
     /// Largest Tile::resampling: no source sample is farther from the finest surface, metres.
     double resampling_max_m = 0;
@@ -78,7 +81,7 @@ class ElevationStore {
     /// The tile below a cell, or nullopt if the store has none there. A tile that is listed by the one above it (or is
     /// a face) but cannot be read is damage: Error(bad_data) naming it. In a store that is not complete, a listed tile
     /// that is missing has not been written yet: nullopt.
-    /// @param root bisection level a multiple of 12
+    /// @param root of a level at which tiles begin
     std::optional<Tile> read(LocationCode root) const;
 
     /// Every tile, ascending by code.

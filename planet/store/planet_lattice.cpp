@@ -53,8 +53,8 @@ LatticeTile* PlanetLattice::find(LocationCode root) const {
 LatticeTile* PlanetLattice::tile(LocationCode root) {
     if (LatticeTile* found = find(root)) return found;
     if (root.bisection_level() > 0) {
-        const LatticeTile* above = tile(root.ancestor(root.bisection_level() - tile_levels));
-        if (!above || !above->below || !above->below->exists[root.bits() & (tile_cells - 1)]) return nullptr;
+        const LatticeTile* above = tile(layers().above(root));
+        if (!above || !above->below || !above->below->exists[layers().position(root)]) return nullptr;
     }
     return tiles_.emplace(root.bits(), read_with_own_deviations(root)).first->second.get();
 }
@@ -112,7 +112,7 @@ void PlanetLattice::place(const LatticeTile& tile, LatticeScratch& scratch) cons
 }
 
 bool PlanetLattice::exists(LocationCode cell) {
-    const auto [root, local] = cell_in_tile(cell);
+    const auto [root, local] = cell_in_tile(cell, layers());
     const LatticeTile* holder = tile(root);
     return holder && holder->exists(local);
 }
@@ -170,9 +170,10 @@ float PlanetLattice::settle(const LatticeTile& tile, unsigned local) {
     const auto& c = tile_layout().corners[local];
     const TileLattice& lattice = tile.below->lattice;
     const CellPlane plane(lattice.position(c[0]), lattice.position(c[1]), lattice.position(c[2]));
-    const int levels = tile_levels - relative_level(local);
+    const int levels = tile.depth - relative_level(local);
+    const unsigned cells = 1u << tile.depth;
     float worst = tile.deviation[local];
-    raise_below(tile, (local << levels) - tile_cells, ((local + 1) << levels) - tile_cells, plane, worst);
+    raise_below(tile, (local << levels) - cells, ((local + 1) << levels) - cells, plane, worst);
     return worst;
 }
 
@@ -182,13 +183,13 @@ void PlanetLattice::raise_below(const LatticeTile& tile, unsigned first, unsigne
     std::vector<LocationCode> roots;
     for (unsigned k = first; k < end; ++k)
         if (tile.below->deviation[k] > 0 && bound_below(tile, k, plane) > worst)
-            roots.emplace_back(tile.root.bits() << tile_levels | k);
+            roots.push_back(layers().below(tile.root, k));
     load(roots);
     for (const LocationCode root : roots) {
         const LatticeTile& below = *find(root);
         place(below, scratch_);
         worst = std::max(worst, certified_deviation(deviation_from(scratch_.lattice, plane)));
-        if (below.below) raise_below(below, 0, tile_cells, plane, worst);
+        if (below.below) raise_below(below, 0, 1u << below.depth, plane, worst);
     }
 }
 
@@ -198,13 +199,14 @@ void PlanetLattice::raise_below(const LatticeTile& tile, unsigned first, unsigne
 float PlanetLattice::bound_below(const LatticeTile& tile, unsigned position, const CellPlane& plane) const {
     const TileLattice& lattice = tile.below->lattice;
     double most = 0, least_facing = 1e300, most_facing = 0;
-    for (const std::uint16_t v : tile_layout().corners[tile_cells + position]) {
+    for (const std::uint16_t v : tile_layout().corners[(1u << tile.depth) + position]) {
         const double facing = std::abs(glm::dot(lattice.normal(v), plane.normal));
         least_facing = std::min(least_facing, facing);
         most_facing = std::max(most_facing, facing);
         most = std::max(most, std::abs(plane.above(lattice.position(v), lattice.normal(v))));
     }
-    const double apart = weights_below * most * most_facing / least_facing;
+    const double weights = tile.root.bisection_level() + tile.depth >= 12 ? weights_below : weights_at_most;
+    const double apart = weights * most * most_facing / least_facing;
     return certified_deviation(apart + static_cast<double>(tile.below->deviation[position]));
 }
 

@@ -35,7 +35,7 @@ struct LatticeTile {
     float stretch = 1;
 
     struct Below {
-        std::bitset<tile_cells> exists;  ///< by position at relative level 12
+        std::bitset<tile_cells> exists;  ///< by position at relative level `depth`
         std::vector<float> deviation;    ///< by position: saturated, of the root of the tile there
         std::vector<float> bound;        ///< by local index: not less than the cell's own deviation
         TileLattice lattice;             ///< this tile's
@@ -64,10 +64,11 @@ class PlanetLattice {
     explicit PlanetLattice(const ElevationStore& store, unsigned threads = 0);
 
     const ElevationStore& store() const { return *store_; }
+    TileLayers layers() const { return store_->metadata().layers; }
     const Placement& placement() const { return placement_; }
     unsigned threads() const { return threads_; }
 
-    /// A tile if it has been loaded, else nullptr. @param root bisection level a multiple of 12
+    /// A tile if it has been loaded, else nullptr. @param root of a level at which tiles begin
     LatticeTile* find(LocationCode root) const;
     /// The tile, loaded if need be; nullptr if the store has none.
     LatticeTile* tile(LocationCode root);

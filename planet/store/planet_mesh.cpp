@@ -106,7 +106,7 @@ class Refinement {
     }
 
     void consider(LocationCode cell) {
-        const auto [root, local] = cell_in_tile(cell);
+        const auto [root, local] = cell_in_tile(cell, lattice_.layers());
         if (LatticeTile* tile = lattice_.find(root)) {
             if (local >> tile->depth == 0) consider(*tile, local);
             return;
@@ -115,10 +115,10 @@ class Refinement {
             consider(*lattice_.tile(root), local);
             return;
         }
-        const LatticeTile* above = lattice_.tile(root.ancestor(root.bisection_level() - tile_levels));
+        const LatticeTile* above = lattice_.tile(lattice_.layers().above(root));
         if (!above || !above->below) return;
         // Saturated, and that of the root: not less than the own deviation of any cell below.
-        const float bound = above->below->deviation[root.bits() & (tile_cells - 1)];
+        const float bound = above->below->deviation[lattice_.layers().position(root)];
         if (bound > 0 && static_cast<double>(bound) + options_.rounding * most_stretch > options_.max_deviation)
             push(waiting_, {bound, cell.bits()});
     }
@@ -161,7 +161,7 @@ class Refinement {
         std::vector<Candidate> cells;
         while (!waiting_.empty() && (!limited_ || cells.size() < batch)) cells.push_back(pop(waiting_));
         std::vector<LocationCode> roots;
-        for (const Candidate& c : cells) roots.push_back(cell_in_tile(LocationCode(c.cell)).root);
+        for (const Candidate& c : cells) roots.push_back(cell_in_tile(LocationCode(c.cell), lattice_.layers()).root);
         std::sort(roots.begin(), roots.end());
         roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
         lattice_.load(roots);
@@ -229,7 +229,7 @@ class MeshBuilder {
         if (c.surface == nullptr) {
             const LatticeTile* tile = c.tile;
             unsigned local = c.local;
-            if (local >> tile_levels != 0 && tile->below) {
+            if (local >> tile->depth != 0 && tile->below) {
                 if (const LatticeTile* below = lattice_.tile(c.code)) {
                     tile = below;
                     local = 1;

@@ -74,8 +74,8 @@ class Checker {
             return;
         }
         found_.vertices += tile->height.size();
-        for (std::size_t k = 0; store_.metadata().complete && k < tile_cells; ++k)
-            if (tile->child_exists[k]) require(LocationCode(root.bits() << tile_levels | k), codes);
+        for (std::size_t k = 0; store_.metadata().complete && k < std::size_t{1} << tile->depth; ++k)
+            if (tile->child_exists[k]) require(scale_.layers.below(root, k), codes);
         check_nested(*tile);
         check_sides(*tile);
         if (root.bisection_level() > 0) check_above(*tile);
@@ -92,7 +92,7 @@ class Checker {
             for (unsigned child = 2 * i; child < 2 * i + 2; ++child) {
                 if (child < 1u << tile.depth) {
                     check_below(tile, i, m, tile, child, lattice_.rounded()[layout.split_vertex[child]]);
-                } else if (tile.depth == tile_levels && tile.child_exists[child - tile_cells]) {
+                } else if (tile.child_exists[child - (1u << tile.depth)]) {
                     if (const TilePointer below = sound(cell_code(tile.root, child)))
                         check_below(tile, i, m, *below, 1, split_position(*below));
                 }
@@ -122,7 +122,7 @@ class Checker {
             beside[static_cast<std::size_t>(side)] = sound(neighbor(tile.root, side));
         for (const SideCell& s : side_cells(tile.depth)) {
             const Tile* other = beside[static_cast<std::size_t>(s.side)].get();
-            const unsigned j = cell_in_tile(neighbor(cell_code(tile.root, s.cell))).local;
+            const unsigned j = local_across(s.cell);
             const bool shared = other && j < 1u << other->depth;
             const float deviation = tile.deviation[s.cell];
             if (!shared) {
@@ -142,16 +142,15 @@ class Checker {
 
     void check_above(const Tile& tile) {
         const LocationCode root = tile.root;
-        const LocationCode above_root = root.ancestor(root.bisection_level() - tile_levels);
-        const TilePointer above = sound(above_root);
+        const TilePointer above = sound(scale_.layers.above(root));
         if (!above) return;
-        const std::size_t position = root.bits() & (tile_cells - 1);
+        const std::size_t position = scale_.layers.position(root);
         if (!above->child_exists[position])
             problem(root, "is not listed by the tile above it");
         else if (above->child_deviation[position] != tile.deviation[1] ||
                  (tile.deviation[1] > 0 && above->child_radius[position] != tile.radius[1]))
             problem(root, "is not what the tile above it says of its root");
-        const auto& corner = tile_layout().corners[tile_cells | position];
+        const auto& corner = tile_layout().corners[scale_.layers.local_above(root)];
         for (std::size_t v = 0; v < 3; ++v)
             if (tile.height[v] != above->height[corner[v]] ||
                 (!tile.undulation.empty() && tile.undulation[v].m != above->undulation[corner[v]].m))

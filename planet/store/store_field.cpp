@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "planet/octahedron/cell_metrics.h"
-#include "planet/store/coverage.h"
 
 namespace planet {
 
@@ -75,16 +74,16 @@ int StoreField::finest_level_in(const Cap& cap, LocationCode root, int known) co
     if (!tile) return known;
     known = std::max(known, root.bisection_level() + tile->depth);
     if (tile->child_exists.none()) return known;
-    // Down to the cells that meet the cap, rather than each of 4096.
+    // Down to the cells that meet the cap, rather than each of up to 4096.
     std::vector<LocationCode> open{root};
     while (!open.empty()) {
         const LocationCode cell = open.back();
         open.pop_back();
         if (!meet(cap, cap_of(cell))) continue;
-        if (cell.bisection_level() < root.bisection_level() + tile_levels) {
+        if (cell.bisection_level() < root.bisection_level() + tile->depth) {
             open.push_back(cell.child(1));
             open.push_back(cell.child(0));
-        } else if (tile->child_exists[cell.bits() & (tile_cells - 1)]) {
+        } else if (tile->child_exists[cell.bits() & ((std::uint64_t{1} << tile->depth) - 1)]) {
             known = finest_level_in(cap, cell, known);
             if (known >= store_->metadata().finest_level) return known;
         }

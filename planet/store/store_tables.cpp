@@ -39,6 +39,7 @@ Entries entries_of(const StoreMetadata& m) {
             {"vertical_datum", std::string(text_of(m.datum))},
             {"undulation", m.undulation},
             {"quantum_m", shortest(m.quantum_m)},
+            {"first_tile_level", std::to_string(m.layers.first)},
             {"finest_level", std::to_string(m.finest_level)},
             {"resampling_max_m", shortest(m.resampling_max_m)},
             {"tiles", std::to_string(m.tiles)},
@@ -160,6 +161,8 @@ StoreMetadata read_metadata(SqliteFile& file) {
     m.datum = datum_from(read.text("vertical_datum"), read);
     m.undulation = read.text("undulation");
     m.quantum_m = read.number<double>("quantum_m", least_quantum_m, most_quantum_m);
+    m.format_version = static_cast<int>(file.number("PRAGMA user_version"));
+    if (m.format_version > 2) m.layers.first = read.number<int>("first_tile_level", 1, tile_levels);
     m.finest_level = read.number<int>("finest_level", 1, max_bisection_level);
     m.resampling_max_m = read.number<double>("resampling_max_m", 0, 1e9);
     m.tiles = read.number<std::uint64_t>("tiles", 0, std::uint64_t{1} << 60);
@@ -172,7 +175,7 @@ StoreMetadata read_metadata(SqliteFile& file) {
 }
 
 TileScale tile_scale(const StoreMetadata& m) {
-    return {{m.ellipsoid, 1.0}, m.quantum_m, !m.undulation.empty()};
+    return {{m.ellipsoid, 1.0}, m.quantum_m, !m.undulation.empty(), m.layers};
 }
 
 }  // namespace planet

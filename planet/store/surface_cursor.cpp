@@ -12,6 +12,11 @@ double triple(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
 }
 
+// By root level: whatever the levels at which tiles begin, 0 for a face and one more for each layer below it.
+std::size_t layer_of(LocationCode root) {
+    return static_cast<std::size_t>((root.bisection_level() + tile_levels - 1) / tile_levels);
+}
+
 }  // namespace
 
 SurfaceCursor::SurfaceCursor(const TileReader& tiles, const Placement& placement)
@@ -36,13 +41,13 @@ void SurfaceCursor::start(const glm::dvec3& n) {
 
 // At a cell below the last level of a tile: goes on in the tile that begins there, if there is one.
 bool SurfaceCursor::enter_tile_below(Step& step) {
-    if (step.tile->depth != tile_levels || !step.tile->child_exists[step.local - tile_cells]) return false;
+    if (!step.tile->child_exists[step.local - (1u << step.tile->depth)]) return false;
     const LocationCode root = cell_code(step.tile->root, step.local);
     std::shared_ptr<const Tile> below = tiles_->tile(root);
     if (!below || below->damaged || !(below->deviation[1] > 0)) return false;
     step.tile = below.get();
     step.local = 1;
-    held_[static_cast<std::size_t>(root.bisection_level() / tile_levels)] = std::move(below);
+    held_[layer_of(root)] = std::move(below);
     plane_valid_ = false;
     return true;
 }

@@ -54,7 +54,7 @@ class SurfaceCursor {
     const TileReader* tiles_;
     Placement placement_;
     std::vector<Step> path_;                                                               // by bisection level
-    std::array<std::shared_ptr<const Tile>, max_bisection_level / tile_levels + 1> held_;  // by root level / 12
+    std::array<std::shared_ptr<const Tile>, max_bisection_level / tile_levels + 1> held_;  // by layer of tiles
 
     bool plane_valid_ = false;
     glm::dvec3 corner_{0}, plane_{0};

@@ -129,8 +129,8 @@ std::shared_ptr<const Tile> TileCache::stand_in(LocationCode root) const {
     t.radius.assign(2, 0.0f);
     if (root.bisection_level() == 0) {
         take_corners_of_other_faces(t);
-    } else if (const auto parent = tile(root.ancestor(root.bisection_level() - tile_levels)); parent) {
-        const auto& corner = tile_layout().corners[tile_cells | (root.bits() & (tile_cells - 1))];
+    } else if (const TileLayers layers = store_->metadata().layers; const auto parent = tile(layers.above(root))) {
+        const auto& corner = tile_layout().corners[layers.local_above(root)];
         for (std::size_t v = 0; v < 3 && !parent->damaged; ++v) copy_vertex(*parent, corner[v], t, v);
     }
     t.height[3] = 0.5f * (t.height[0] + t.height[1]);

@@ -160,16 +160,18 @@ bool stores_deviation(unsigned i) {
     return i > tile_layout().split_neighbor[i];
 }
 
-bool stores_radius(unsigned i) {
+// Of the last level, and on the sides.
+bool stores_radius(unsigned i, int depth) {
     const unsigned beyond = tile_layout().split_neighbor[i];
-    return beyond == 0 || (i >= tile_cells / 2 && i < beyond);
+    return beyond == 0 || (i >> (depth - 1) && i < beyond);
 }
 
 void write_inner(ByteWriter& out, const BakedTile& baked) {
     const Tile& tile = baked.tile;
+    const unsigned cells = 1u << tile.depth;
     out.f32(tile.min_height);
     out.f32(tile.max_height);
-    std::vector<std::uint8_t> child(tile_cells);
+    std::vector<std::uint8_t> child(cells);
     for (std::size_t k = 0; k < child.size(); ++k) child[k] = tile.child_exists[k];
     write_bits(out, child);
     // Records of one level are alike: as a level's least one and what the others have above it.
@@ -180,18 +182,18 @@ void write_inner(ByteWriter& out, const BakedTile& baked) {
         rice.group({&least, 1});
         rice.group(codes);
     };
-    for (unsigned first = 1; first < tile_cells; first *= 2) {
+    for (unsigned first = 1; first < cells; first *= 2) {
         std::vector<std::uint32_t> deviation, radius;
         for (unsigned i = first; i < 2 * first; ++i) {
             if (stores_deviation(i)) deviation.push_back(deviation_code(tile.deviation[i]));
-            if (stores_radius(i)) radius.push_back(radius_code(tile.radius[i]));
+            if (stores_radius(i, tile.depth)) radius.push_back(radius_code(tile.radius[i]));
         }
         write_codes(deviation);
         write_codes(radius);
     }
     // Those of the roots below lie on the ladders, like all records on sides: exact.
     std::vector<std::uint32_t> deviation, radius;
-    for (std::size_t k = 0; k < tile_cells; ++k) {
+    for (std::size_t k = 0; k < cells; ++k) {
         if (!tile.child_exists[k]) continue;
         deviation.push_back(deviation_code(tile.child_deviation[k]));
         radius.push_back(radius_code(tile.child_radius[k]));
@@ -218,7 +220,7 @@ void read_inner_level(RiceReader& rice, unsigned first, Tile& tile) {
     std::size_t deviations = 0, radii = 0;
     for (unsigned i = first; i < 2 * first; ++i) {
         deviations += stores_deviation(i);
-        radii += stores_radius(i);
+        radii += stores_radius(i, tile.depth);
     }
     const auto deviation = read_codes(rice, deviations, deviation_codes);
     const auto radius = read_codes(rice, radii, radius_codes);
@@ -229,7 +231,7 @@ void read_inner_level(RiceReader& rice, unsigned first, Tile& tile) {
             tile.deviation[i] = deviation_from_code(deviation[d++]);
             if (beyond != 0) tile.deviation[beyond] = tile.deviation[i];
         }
-        if (stores_radius(i)) {
+        if (stores_radius(i, tile.depth)) {
             tile.radius[i] = radius_from_code(radius[r++]);
             if (beyond != 0) tile.radius[beyond] = tile.radius[i];
         }
@@ -240,9 +242,10 @@ void read_children(RiceReader& rice, Tile& tile) {
     const std::size_t children = tile.child_exists.count();
     const auto deviation = read_codes(rice, children, deviation_codes);
     const auto radius = read_codes(rice, children, radius_codes);
-    tile.child_deviation.assign(tile_cells, 0);
-    tile.child_radius.assign(tile_cells, 0);
-    for (std::size_t k = 0, c = 0; k < tile_cells; ++k) {
+    const std::size_t cells = std::size_t{1} << tile.depth;
+    tile.child_deviation.assign(cells, 0);
+    tile.child_radius.assign(cells, 0);
+    for (std::size_t k = 0, c = 0; k < cells; ++k) {
         if (!tile.child_exists[k]) continue;
         tile.child_deviation[k] = deviation_from_code(deviation[c]);
         tile.child_radius[k] = radius_from_code(radius[c++]);
@@ -251,26 +254,27 @@ void read_children(RiceReader& rice, Tile& tile) {
 
 void read_inner(ByteReader& in, const TileScale& scale, Tile& tile) {
     static thread_local TileLattice lattice;
+    const unsigned cells = 1u << tile.depth;
     tile.min_height = finite(in.f32());
     tile.max_height = finite(in.f32());
-    const auto child = read_bits(in, tile_cells);
+    const auto child = read_bits(in, cells);
     for (std::size_t k = 0; k < child.size(); ++k) tile.child_exists[k] = child[k];
     {
         RiceReader rice(in);
-        for (unsigned first = 1; first < tile_cells; first *= 2) read_inner_level(rice, first, tile);
+        for (unsigned first = 1; first < cells; first *= 2) read_inner_level(rice, first, tile);
         read_children(rice, tile);
     }
-    std::vector<std::uint8_t> exists(tile_cells);
-    for (std::size_t i = 1; i < tile_cells; ++i) exists[i] = tile.deviation[i] > 0;
+    std::vector<std::uint8_t> exists(cells);
+    for (std::size_t i = 1; i < cells; ++i) exists[i] = tile.deviation[i] > 0;
     lattice.set_normals(corners(tile.root), tile.depth);
     lattice.set_positions(scale.placement, tile.height, tile.undulation, {});
     // The radii in between, as the bake had them. Deviations are saturated already, so raising leaves them alone.
-    std::vector<float> start(tile_cells);
-    corner_radii(lattice, exists, true, std::vector<std::uint8_t>(tile_cells / 2, 0), start);
+    std::vector<float> start(cells);
+    corner_radii(lattice, exists, true, std::vector<std::uint8_t>(cells / 2, 0), start);
     const TileLayout& layout = tile_layout();
     static thread_local TileSaturation saturation;
     saturation.start(tile.depth, lattice.rounded());
-    for (int level = tile_levels - 2; level >= 0; --level) {
+    for (int level = tile.depth - 2; level >= 0; --level) {
         for (unsigned i = 1u << level; i < 2u << level; ++i)
             if (layout.split_neighbor[i] != 0) tile.radius[i] = start[i];
         saturation.level(level, exists, tile.deviation, tile.radius);
@@ -391,8 +395,9 @@ Tile decode_tile(LocationCode root, std::span<const std::uint8_t> bytes, const T
     const bool inner = flags & flag_inner;
     if (((flags & flag_undulation) != 0) != scale.has_undulation)
         throw MalformedBytes("its undulations are not the store's");
-    if (tile.depth < 1 || tile.depth > tile_levels || (inner && tile.depth != tile_levels) ||
-        root.bisection_level() % tile_levels != 0 || root.bisection_level() + tile.depth > max_bisection_level)
+    const int level = root.bisection_level(), deepest = scale.layers.depth(level);
+    if (tile.depth < 1 || tile.depth > deepest || (inner && tile.depth != deepest) || !scale.layers.begin_at(level) ||
+        level + tile.depth > max_bisection_level)
         throw MalformedBytes("its depth is not possible");
     tile.resampling = finite(in.f32());
     tile.height.resize(tile_layout().vertex_count[static_cast<std::size_t>(tile.depth)]);

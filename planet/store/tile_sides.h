@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "planet/mesh/tile_layout.h"
+#include "planet/mesh/tile_layers.h"
 #include "planet/octahedron/location_code.h"
 
 namespace planet {
@@ -37,11 +37,17 @@ struct CellInTile {
     unsigned local;
 };
 
-/// The tile and local index of a cell: tiles begin at every twelfth bisection level.
-inline CellInTile cell_in_tile(LocationCode cell) {
-    const int level = cell.bisection_level() % tile_levels;
+/// The tile and local index of a cell.
+inline CellInTile cell_in_tile(LocationCode cell, TileLayers layers) {
+    const int level = cell.bisection_level() - layers.root_level(cell.bisection_level());
     return {LocationCode(cell.bits() >> level),
             1u << level | (static_cast<unsigned>(cell.bits()) & ((1u << level) - 1))};
+}
+
+/// The local index, in the tile beside, of the other cell of a side cell's diamond: the path below the root is
+/// complemented.
+inline unsigned local_across(unsigned local) {
+    return local ^ ((1u << relative_level(local)) - 1);
 }
 
 /// Which diamonds of a tile exist, given those on its sides. @param on_side by side cell @param exists by local index,

@@ -22,7 +22,40 @@ double deviation(const Delaunay& mesh, const HeightGrid& grid, Index triangle, g
     return std::abs(sum) / static_cast<double>(weight[0] + weight[1] + weight[2]);
 }
 
+// Samples on a side belong to two triangles, of which one may be new: so each triangle is looked up in the grid.
+class ErrorGridMeasure : public TinMeasure {
+  public:
+    ErrorGridMeasure(const HeightGrid& grid, LocateWay way) : grid_(grid), way_(way) {}
+
+    void measure(const Delaunay& mesh, std::span<const Index> triangles, std::span<Measured> out) override {
+        if (!errors_ || triangles.size() == mesh.triangle_count()) errors_ = std::make_unique<ErrorGrid>(grid_, way_);
+        errors_->update(mesh, triangles);
+        for (std::size_t i = 0; i < triangles.size(); ++i) out[i] = worst(sorted_triangle(mesh, grid_, triangles[i]));
+    }
+
+  private:
+    Measured worst(const SortedTriangle& t) const {
+        Measured worst;
+        for_each_span(t, [&](int y, int first, int last) {
+            const double* const row =
+                errors_->deviations().data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width());
+            for (int x = first; x <= last; ++x)
+                if (row[x] > worst.deviation) worst = {row[x], row[x], {x, y}};
+            return true;
+        });
+        return worst;
+    }
+
+    const HeightGrid& grid_;
+    const LocateWay way_;
+    std::unique_ptr<ErrorGrid> errors_;
+};
+
 }  // namespace
+
+std::unique_ptr<TinMeasure> make_error_grid_measure(const HeightGrid& grid, LocateWay way) {
+    return std::make_unique<ErrorGridMeasure>(grid, way);
+}
 
 ErrorGrid::ErrorGrid(const HeightGrid& grid, LocateWay way)
     : grid_(grid), deviation_(grid.count(), 0), by_row_(static_cast<std::size_t>(grid.height())) {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "planet/tin/height_grid.h"
+#include "planet/tin/measure.h"
 #include "planet/tin/triangle_finder.h"
 
 namespace planet {
@@ -45,6 +45,10 @@ class ErrorGrid {
     std::vector<Largest> by_row_;
     std::size_t measured_ = 0;
 };
+
+/// The local measure by an error grid that every insertion updates: for insert_greedily(), which makes the same TIN with
+/// it as without. @param grid stays as long as the measure
+std::unique_ptr<TinMeasure> make_error_grid_measure(const HeightGrid& grid, LocateWay way);
 
 /// Inserts until the tolerance is kept or another insertion would make more than max_triangles.
 /// @return samples measured, by all insertions

@@ -43,6 +43,15 @@ HeightGrid::HeightGrid(int width, int height) : width_(width), height_(height), 
     heights_.resize(count() + readable_beyond, std::numeric_limits<float>::quiet_NaN());
 }
 
+HeightGrid::HeightGrid(int width, int height, const std::function<double(std::span<float>)>& fill)
+    : width_(width), height_(height) {
+    assert(width >= 2 && height >= 2);
+    heights_.resize(count() + readable_beyond);
+    const std::span samples(heights_.data(), count());
+    sample_rounding_ = fill(samples);
+    has_void_ = std::any_of(samples.begin(), samples.end(), [](float h) { return std::isnan(h); });
+}
+
 std::size_t HeightGrid::valid_samples() const {
     if (!has_void_) return count();
     return static_cast<std::size_t>(std::count_if(heights_.begin(),

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "planet/elevation/raster.h"
@@ -22,6 +24,9 @@ class HeightGrid {
     HeightGrid(const HeightGrid& whole, glm::ivec2 low, glm::ivec2 high);
     /// All void. @param width, height at least 2
     HeightGrid(int width, int height);
+    /// @param width, height at least 2 @param fill writes all heights, in rows, where they will stay, and returns
+    /// sample_rounding()
+    HeightGrid(int width, int height, const std::function<double(std::span<float>)>& fill);
 
     int width() const { return width_; }    ///< samples
     int height() const { return height_; }  ///< samples

@@ -86,6 +86,13 @@ void make_as_one(const HeightGrid& grid, const TinOptions& options, TinResult& r
     result.mesh = triangles_over_samples(mesh, grid);
 }
 
+// A tile has two triangles at least, however large the tolerance.
+bool is_mostly_borders(const TinMesh& mesh, const HeightGrid& grid) {
+    constexpr std::size_t few = 10;  // triangles a tile: about there tiles and one mesh come to the same number
+    const TinTiling tiling(grid.width(), grid.height(), tiled_tin_step);
+    return tiling.count() > 1 && mesh.triangles.size() < few * tiling.count();
+}
+
 }  // namespace
 
 TinResult make_tin(const HeightGrid& grid, const TinOptions& options) {
@@ -102,6 +109,11 @@ TinResult make_tin(const HeightGrid& grid, const TinOptions& options) {
     Steps steps(result);
     result.mesh = tiled_tin(grid, {options.tolerance, options.quality, options.threads});
     steps.done("insertion");
+    if (is_mostly_borders(result.mesh, grid)) {
+        TinResult whole;
+        make_as_one(grid, options, whole);
+        if (whole.mesh.triangles.size() < result.mesh.triangles.size()) return whole;
+    }
     return result;
 }
 

@@ -66,9 +66,11 @@ void tin_tiles(const TinTiling& tiling, const WindowReader& read, const TiledTin
 TinTile tin_tile(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, const TiledTinOptions& options,
                  glm::ivec2 offset = {0, 0});
 
-/// All tiles of a raster in memory as one mesh: no vertex twice.
-/// @param step samples a tile; the default keeps a tile's work in the processor's cache
-TinMesh tiled_tin(const HeightGrid& grid, const TiledTinOptions& options, int step = 256);
+/// Samples a tile that keep its work in the processor's cache.
+inline constexpr int tiled_tin_step = 256;
+
+/// All tiles of a raster in memory as one mesh: no vertex twice. @param step samples a tile
+TinMesh tiled_tin(const HeightGrid& grid, const TiledTinOptions& options, int step = tiled_tin_step);
 
 /// Joins tiles into one mesh: vertices at the same sample become one. @param tiles in any order
 TinMesh joined(std::vector<TinTile> tiles);

@@ -216,30 +216,34 @@ FeatureReport insert_features(Delaunay& mesh, const HeightGrid& grid, const TinF
     return insertion.report();
 }
 
-void keep_within(HeightGrid& grid, const Raster& raster, const std::vector<Polygon>& polygons) {
+void keep_window_within(HeightGrid& window, glm::ivec2 first, const Raster& raster,
+                        const std::vector<Polygon>& polygons) {
     const SamplePlaces places(raster);
-    std::vector<std::uint8_t> kept(grid.count(), 0);
+    const auto columns = static_cast<std::size_t>(window.width());
+    std::vector<std::uint8_t> kept(window.count(), 0);
     for (const Polygon& polygon : polygons) {
         std::vector<std::vector<glm::dvec2>> rings(1 + polygon.holes.size());
         for (const glm::dvec3& p : polygon.outer) rings[0].push_back(places.at(p));
         for (std::size_t k = 0; k < polygon.holes.size(); ++k)
             for (const glm::dvec3& p : polygon.holes[k]) rings[k + 1].push_back(places.at(p));
-        for (int y = 0; y < grid.height(); ++y) {
-            const std::vector<double> at = crossings_of_row(rings, static_cast<double>(y));
+        for (int y = 0; y < window.height(); ++y) {
+            const std::vector<double> at = crossings_of_row(rings, static_cast<double>(first.y + y));
             for (std::size_t i = 0; i + 1 < at.size(); i += 2) {
-                const double first = std::max(0.0, std::ceil(at[i])),
-                             last = std::min(grid.width() - 1.0, std::floor(at[i + 1]));
-                for (double x = first; x <= last; ++x)
-                    kept[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid.width()) +
-                         static_cast<std::size_t>(x)] = 1;
+                const double from = std::max(0.0, std::ceil(at[i]) - first.x),
+                             to = std::min(window.width() - 1.0, std::floor(at[i + 1]) - first.x);
+                for (double x = from; x <= to; ++x)
+                    kept[static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)] = 1;
             }
         }
     }
-    for (int y = 0; y < grid.height(); ++y)
-        for (int x = 0; x < grid.width(); ++x)
-            if (!kept[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid.width()) +
-                      static_cast<std::size_t>(x)])
-                grid.set({x, y}, std::numeric_limits<float>::quiet_NaN());
+    for (int y = 0; y < window.height(); ++y)
+        for (int x = 0; x < window.width(); ++x)
+            if (!kept[static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)])
+                window.set({x, y}, std::numeric_limits<float>::quiet_NaN());
+}
+
+void keep_within(HeightGrid& grid, const Raster& raster, const std::vector<Polygon>& polygons) {
+    keep_window_within(grid, {0, 0}, raster, polygons);
     if (grid.valid_samples() == 0)
         throw Error(Fault::bad_data, raster.name, "has no valid sample within the mask", "a mask that meets it");
 }

@@ -44,4 +44,9 @@ FeatureReport insert_features(Delaunay& mesh, const HeightGrid& grid, const TinF
 /// Throws Error(bad_data) if nothing is left.
 void keep_within(HeightGrid& grid, const Raster& raster, const std::vector<Polygon>& polygons);
 
+/// The same for a window of the raster, of which nothing need be left. Windows agree about the samples that they share.
+/// @param first sample of the raster that is the window's first
+void keep_window_within(HeightGrid& window, glm::ivec2 first, const Raster& raster,
+                        const std::vector<Polygon>& polygons);
+
 }  // namespace planet

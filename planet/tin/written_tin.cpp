@@ -1,6 +1,7 @@
 #include "planet/tin/written_tin.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -81,7 +82,8 @@ class HolderBeside {
 // Samples of one triangle, and their distances.
 class TriangleSamples {
   public:
-    TriangleSamples(const HeightGrid& grid, const RasterFrame& frame) : grid_(grid), frame_(frame) {}
+    TriangleSamples(const HeightGrid& grid, const RasterFrame& frame)
+        : grid_(grid), frame_(frame), affine_grid_(frame.grid()), metre_(1 / frame.exaggeration()) {}
 
     void collect(const std::array<glm::ivec2, 3>& c) {
         samples_.clear();
@@ -111,14 +113,15 @@ class TriangleSamples {
   private:
     // The plane as a function of column and row.
     void measure_affine(const glm::dvec3& p, const glm::dvec3& n, glm::ivec2 corner) {
-        const SampleGrid& g = frame_.grid();
+        const SampleGrid& g = affine_grid_;
+        const double e = frame_.exaggeration();
         const glm::dvec2 slope(-n.x / n.z, -n.y / n.z);
         const double per_column = glm::dot(slope, g.per_column), per_row = glm::dot(slope, g.per_row);
         const double height = p.z + glm::dot(slope, g.crs_from_sample(corner) - glm::dvec2(p));
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             const glm::ivec2 d = samples_[i] - corner;
-            distances_[i] =
-                std::abs(height + per_column * d.x + per_row * d.y - static_cast<double>(grid_.at(samples_[i])));
+            const double h = e * static_cast<double>(grid_.at(samples_[i]));
+            distances_[i] = metre_ * std::abs(height + per_column * d.x + per_row * d.y - h);
         }
     }
 
@@ -134,21 +137,31 @@ class TriangleSamples {
         const double least_across = 1e-9 * glm::length(n);
         for (std::size_t i = 0; i < count; ++i) {
             const double across = glm::dot(glm::dvec3(up_[i]), n);
-            distances_[i] = std::abs(across) > least_across
-                                ? std::abs(glm::dot(p[0] - position_[i], n) / across)
-                                : std::min({glm::distance(position_[i], p[0]), glm::distance(position_[i], p[1]),
-                                            glm::distance(position_[i], p[2])});
+            distances_[i] =
+                metre_ * (std::abs(across) > least_across
+                              ? std::abs(glm::dot(p[0] - position_[i], n) / across)
+                              : std::min({glm::distance(position_[i], p[0]), glm::distance(position_[i], p[1]),
+                                          glm::distance(position_[i], p[2])}));
         }
     }
 
     const HeightGrid& grid_;
     const RasterFrame& frame_;
+    const SampleGrid affine_grid_;
+    const double metre_;  ///< of height, in the frame
     std::vector<glm::ivec2> samples_;
     std::vector<double> distances_, heights_;
     std::vector<glm::dvec2> at_;
     std::vector<glm::dvec3> position_;
     std::vector<glm::vec3> up_;
 };
+
+// Along the Z-order curve, so that each point is found near the one before: by the highest bit in which two differ.
+bool before_in_quadrants(glm::ivec2 p, glm::ivec2 q) {
+    const int x = std::bit_width(static_cast<std::uint32_t>(p.x ^ q.x)),
+              y = std::bit_width(static_cast<std::uint32_t>(p.y ^ q.y));
+    return x > y ? p.x < q.x : p.y < q.y;
+}
 
 struct Sum {
     double max = 0, squares = 0, angle = std::numeric_limits<double>::infinity();
@@ -177,6 +190,11 @@ Sum measure_piece(const TinMesh& mesh, std::span<const glm::dvec3> written, cons
             if (!holder.counts(c, inside.samples()[k])) continue;
             sum.squares += d * d;
             ++sum.samples;
+            if (!out.by_sample.empty()) {
+                const glm::ivec2 s = inside.samples()[k];
+                out.by_sample[static_cast<std::size_t>(s.y) * static_cast<std::size_t>(grid.width()) +
+                              static_cast<std::size_t>(s.x)] = static_cast<float>(d);
+            }
         }
         sum.max = std::max(sum.max, out.by_triangle[i]);
     }
@@ -196,26 +214,26 @@ SurfaceMesh surface_from_tin(const TinMesh& mesh, const HeightGrid& grid, const 
     return out;
 }
 
-HeightGrid heights_above_tangent_plane(const HeightGrid& grid, const RasterFrame& frame) {
-    HeightGrid out(grid.width(), grid.height());
+HeightGrid heights_above_tangent_plane(const HeightGrid& grid, const RasterFrame& frame, unsigned threads) {
     const auto width = static_cast<std::size_t>(grid.width());
-    for (int y = 0; y < grid.height(); ++y) {
-        std::vector<glm::dvec2> at(width);
-        std::vector<double> heights(width);
-        std::vector<glm::dvec3> position(width);
-        for (std::size_t x = 0; x < width; ++x) {
-            at[x] = glm::dvec2(static_cast<double>(x), y);
-            heights[x] = static_cast<double>(grid.row(y)[x]);
-        }
-        frame.place(at, heights, position, {});
-        for (std::size_t x = 0; x < width; ++x) out.set({static_cast<int>(x), y}, static_cast<float>(position[x].z));
-    }
-    return HeightGrid(out, {0, 0}, {grid.width() - 1, grid.height() - 1});
+    return {grid.width(), grid.height(), [&](std::span<float> out) {
+                parallel_for(static_cast<std::size_t>(grid.height()), threads, [&](std::size_t row) {
+                    const int y = static_cast<int>(row);
+                    std::vector<glm::dvec2> at(width);
+                    std::vector<double> heights(grid.row(y), grid.row(y) + width);
+                    std::vector<glm::dvec3> position(width);
+                    for (std::size_t x = 0; x < width; ++x) at[x] = glm::dvec2(static_cast<double>(x), y);
+                    frame.place(at, heights, position, {});
+                    for (std::size_t x = 0; x < width; ++x) out[row * width + x] = static_cast<float>(position[x].z);
+                });
+                return grid.sample_rounding();
+            }};
 }
 
 WrittenDeviation measure_written(const TinMesh& mesh, std::span<const glm::dvec3> written, const HeightGrid& grid,
-                                 const RasterFrame& frame, unsigned threads) {
+                                 const RasterFrame& frame, unsigned threads, bool by_sample) {
     WrittenDeviation out;
+    if (by_sample) out.by_sample.assign(grid.count(), std::numeric_limits<float>::quiet_NaN());
     const std::size_t triangles = mesh.triangles.size(), pieces = (triangles + piece - 1) / piece;
     out.by_triangle.assign(triangles, 0);
     out.farthest.assign(triangles, glm::ivec2(-1));
@@ -249,8 +267,10 @@ TinMesh with_samples(const TinMesh& mesh, const HeightGrid& grid, std::span<cons
     Delaunay all = coarsest_tin(grid);
     insert_features(all, grid, features);
     all.reserve(mesh.triangles.size());
-    for (const glm::ivec2 p : mesh.vertices) all.insert(p);
-    for (const glm::ivec2 p : samples) all.insert(p);
+    std::vector<glm::ivec2> points = mesh.vertices;
+    points.insert(points.end(), samples.begin(), samples.end());
+    std::sort(points.begin(), points.end(), before_in_quadrants);
+    for (const glm::ivec2 p : points) all.insert(p);
     return triangles_over_samples(all, grid);
 }
 

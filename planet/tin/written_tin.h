@@ -21,7 +21,7 @@ SurfaceMesh surface_from_tin(const TinMesh& mesh, const HeightGrid& grid, const 
 /// raster's middle. Between these and the plane of a triangle lies, to within the tilt of the verticals, what lies
 /// between the samples and the triangle as written. @param frame an enu one @return metres, NaN where the frame does
 /// not reach
-HeightGrid heights_above_tangent_plane(const HeightGrid& grid, const RasterFrame& frame);
+HeightGrid heights_above_tangent_plane(const HeightGrid& grid, const RasterFrame& frame, unsigned threads = 0);
 
 struct WrittenDeviation {
     double max = 0, rms = 0;           ///< metres, over the valid samples in triangles
@@ -30,14 +30,17 @@ struct WrittenDeviation {
     double angle_min = 0;              ///< smallest angle of the triangles as written, radians, x and y in metres
     std::vector<double> by_triangle;   ///< largest of each, metres
     std::vector<glm::ivec2> farthest;  ///< the sample of each that has it; -1 if none deviates
+    /// On request: of each sample, in rows, metres, from the triangle that counts it; NaN where void or in no triangle.
+    std::vector<float> by_sample;
 };
 
 /// The distance along the vertical of every sample of every triangle, sides included, from the plane through the
-/// vertices as written. For the rms each sample counts once, in the first triangle that holds it.
+/// vertices as written, in metres of height: divided by the frame's exaggeration. For the rms each sample counts once,
+/// in the first triangle that holds it.
 /// @param written by vertex, in the frame, rounded as its format rounds
 /// @param threads 0: one a processor. The same bits whatever the number.
 WrittenDeviation measure_written(const TinMesh& mesh, std::span<const glm::dvec3> written, const HeightGrid& grid,
-                                 const RasterFrame& frame, unsigned threads = 0);
+                                 const RasterFrame& frame, unsigned threads = 0, bool by_sample = false);
 
 /// The TIN with more samples in it: what measure_written() finds too far, as one with curved sides or rounded vertices
 /// may be. Triangles elsewhere may change too, where the mesh was not one Delaunay triangulation: measure again.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "planet/bake/bake.h"
 #include "planet/elevation/elevation_field.h"
-#include "planet/store/bake.h"
 
 namespace render {
 

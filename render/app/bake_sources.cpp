@@ -60,7 +60,7 @@ std::shared_ptr<const planet::ElevationField> open_bake_sources(const BakeComman
         if (command.datum.size() > 1) specs.back().datum = command.datum[specs.size() - 1];
     }
     planet::SourceOptions options;
-    options.geoid = [geoid](const glm::dvec3& normal) { return geoid->undulation(normal); };
+    options.geoid = [geoid](auto normals, auto out) { geoid->undulations(normals, out); };
     options.memory_bytes = memory_bytes;
     options.base = base;
     options.progress = progress;

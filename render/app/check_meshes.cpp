@@ -5,7 +5,7 @@
 #include "planet/mesh/refine.h"
 #include "planet/mesh/surface_check.h"
 #include "planet/store/store_field.h"
-#include "planet/store/store_tiles.h"
+#include "planet/streaming/store_tiles.h"
 #include "render/app/check_parts.h"
 #include "render/app/earth_store.h"
 #include "render/picture/camera.h"

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "planet/store/store_field.h"
-#include "planet/store/store_tiles.h"
+#include "planet/streaming/store_tiles.h"
 #include "render/app/render_options.h"
 #include "render/picture/camera.h"
 #include "render/picture/relief_patches.h"

@@ -32,7 +32,7 @@ Earth open_earth(const EarthSources& sources) {
     for (const char* file : regional_files)
         layers.push_back(planet::open_raster_field(data_file(file), VerticalDatum::egm96));
     layers.insert(layers.end(), named.begin(), named.end());
-    auto undulation = [geoid](const glm::dvec3& normal) { return geoid->undulation(normal); };
+    auto undulation = [geoid](auto normals, auto out) { geoid->undulations(normals, out); };
     auto heights =
         std::make_shared<planet::LayeredField>(std::move(layers), VerticalDatum::egm96, std::move(undulation));
     return {std::move(heights), geoid};

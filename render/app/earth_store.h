@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "planet/store/bake.h"
+#include "planet/bake/bake.h"
 #include "render/app/earth.h"
 
 namespace render {

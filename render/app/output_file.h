@@ -24,6 +24,9 @@ class OutputFile {
     /// Once, with the last bytes. Throws as append() does.
     void commit(std::string_view bytes = {});
 
+    /// Where the bytes are until commit(), to be read again; empty where the target is written in place.
+    const std::filesystem::path& temporary() const { return temporary_; }
+
   private:
     [[noreturn]] void fail(int error) const;
     void abandon() noexcept;

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "planet/mesh/segments.h"
-#include "planet/store/resident_tiles.h"
+#include "planet/streaming/resident_tiles.h"
 #include "render/app/drawn_surface.h"
 #include "render/app/steps.h"
 #include "render/picture/camera.h"

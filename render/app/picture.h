@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "planet/elevation/elevation_field.h"
-#include "planet/store/resident_tiles.h"
+#include "planet/streaming/resident_tiles.h"
 #include "render/app/render_options.h"
 
 namespace render {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #define OCTAGLOBE_COMMANDS(command) \
-    command(render) command(bake) command(mesh) command(query) command(check) command(verify) command(info)
+    command(render) command(bake) command(mesh) command(tin) command(query) command(check) command(verify) command(info)
 
 namespace render {
 

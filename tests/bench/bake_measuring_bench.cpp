@@ -7,9 +7,9 @@
 #include <map>
 
 #include "bake_scene.h"
+#include "planet/bake/coverage.h"
+#include "planet/bake/sample_distance.h"
 #include "planet/mesh/saturation.h"
-#include "planet/store/coverage.h"
-#include "planet/store/sample_distance.h"
 
 namespace {
 

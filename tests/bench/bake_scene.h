@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "planet/bake/bake.h"
 #include "planet/elevation/raster_field.h"
 #include "planet/mesh/saturation.h"
-#include "planet/store/bake.h"
 #include "planet/store/baked_tile.h"
 #include "planet/store/ladder.h"
 #include "planet/store/tile_codec.h"
@@ -25,7 +25,7 @@ struct BakeScene {
     std::size_t leaf_vertices = 0;
 
     BakeScene() {
-        const ElevationStore store = bake_in_memory(*field, {});
+        const ElevationStore store = bake_in_memory(*field, {.first_tile_level = scale.layers.first});
         for (const LocationCode root : store.tiles()) tiles.push_back(as_baked(*store.read(root)));
         for (const BakedTile& t : tiles)
             if (!t.inner() && t.tile.min_height > 0 && std::count(t.exists.begin(), t.exists.end(), 0) == 1)

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "bake_scene.h"
-#include "planet/store/bake.h"
+#include "planet/bake/bake.h"
 #include "planet/store/tile_sides.h"
 
 namespace {
@@ -58,7 +58,7 @@ class LatticeSquare {
         const Corner left = first ? Corner{steps, 0} : Corner{0, steps},
                      right = first ? Corner{0, steps} : Corner{steps, 0},
                      apex = first ? Corner{0, 0} : Corner{steps, steps};
-        const auto [root, local] = cell_in_tile(cell);
+        const auto [root, local] = cell_in_tile(cell, bake_scene().scale.layers);
         const auto holder = tiles_.find(root.bits());
         if (holder == tiles_.end()) return false;
         const auto& vertex = tile_layout().corners[local];
@@ -71,7 +71,7 @@ class LatticeSquare {
     }
 
     bool fill(LocationCode cell, Corner left, Corner right, Corner apex) {
-        const auto [root, local] = cell_in_tile(cell);
+        const auto [root, local] = cell_in_tile(cell, bake_scene().scale.layers);
         const auto holder = tiles_.find(root.bits());
         if (holder == tiles_.end() || local >> holder->second->tile.depth || !holder->second->exists[local])
             return false;

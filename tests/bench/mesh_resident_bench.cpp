@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "patchy_store.h"
-#include "planet/store/resident_tiles.h"
+#include "planet/streaming/resident_tiles.h"
 
 namespace planet {
 namespace {

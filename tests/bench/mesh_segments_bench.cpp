@@ -8,13 +8,13 @@
 #include <cmath>
 #include <vector>
 
+#include "planet/bake/bake.h"
 #include "planet/elevation/raster_field.h"
 #include "planet/elevation/raster_io.h"
 #include "planet/frames.h"
 #include "planet/mesh/segments.h"
-#include "planet/store/bake.h"
 #include "planet/store/store_field.h"
-#include "planet/store/store_tiles.h"
+#include "planet/streaming/store_tiles.h"
 
 namespace {
 

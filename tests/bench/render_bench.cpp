@@ -18,7 +18,7 @@
 #include "planet/mesh/segments.h"
 #include "planet/octahedron/cell_metrics.h"
 #include "planet/store/store_field.h"
-#include "planet/store/store_tiles.h"
+#include "planet/streaming/store_tiles.h"
 #include "render/app/earth_store.h"
 #include "render/app/imagery.h"
 #include "render/app/render_options.h"

@@ -13,9 +13,9 @@
 #include <thread>
 
 #include "bumpy_field.h"
+#include "planet/bake/frontier.h"
+#include "planet/bake/settling.h"
 #include "planet/error.h"
-#include "planet/store/bake_frontier.h"
-#include "planet/store/bake_settling.h"
 #include "reference_bake.h"
 
 namespace planet {
@@ -476,7 +476,7 @@ TEST(SideCellsAcross, AreTheOtherCellsOfTheirDiamonds) {
     const auto sides = side_cells(tile_levels);
     for (const LocationCode tile : some_tiles())
         for (std::size_t k = 0; k < sides.size(); ++k) {
-            const CellInTile across = cell_in_tile(neighbor(cell_code(tile, sides[k].cell)));
+            const CellInTile across = cell_in_tile(neighbor(cell_code(tile, sides[k].cell)), {});
             ASSERT_EQ(across.root, neighbor(tile, sides[k].side));
             ASSERT_EQ(across.local, sides[side_cells_across()[k]].cell);
         }

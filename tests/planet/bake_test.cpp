@@ -1,4 +1,4 @@
-#include "planet/store/bake.h"
+#include "planet/bake/bake.h"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 #include <random>
 
 #include "bumpy_field.h"
+#include "planet/bake/coverage.h"
 #include "planet/error.h"
 #include "planet/mesh/deviation.h"
 #include "planet/mesh/view.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/coverage.h"
 #include "planet/store/tile_cache.h"
 #include "planet/store/tile_codec.h"
 #include "planet/store/tile_sides.h"
@@ -30,6 +30,7 @@ BakeOptions with_geoid() {
     BakeOptions o;
     o.undulation = testing::bumpy_undulation;
     o.undulation_name = "made up";
+    o.first_tile_level = 12;
     return o;
 }
 
@@ -53,7 +54,7 @@ struct Record {
 };
 
 std::optional<Record> record(const std::map<LocationCode, Tile>& tiles, LocationCode cell) {
-    const auto [root, local] = cell_in_tile(cell);
+    const auto [root, local] = cell_in_tile(cell, {});
     const auto found = tiles.find(root);
     if (found == tiles.end() || local >> found->second.depth) return std::nullopt;
     return Record{&found->second, local};
@@ -200,7 +201,7 @@ TEST(Bake, NoDiamondPassesTheTestWhoseParentsFail) {
                 const LocationCode cell = cell_code(root, i);
                 if (cell.bisection_level() == 0) continue;
                 for (const LocationCode parent : {cell.parent(), neighbor(cell).parent()}) {
-                    const auto [above, local] = cell_in_tile(parent);
+                    const auto [above, local] = cell_in_tile(parent, {});
                     ASSERT_TRUE(test(placed.at(above).split[local])) << to_string(cell) << " " << to_string(parent);
                 }
             }

@@ -114,7 +114,9 @@ TEST(LayeredField, WithoutAnySourceTheHeightIsZero) {
 }
 
 TEST(LayeredField, DatumsMeetThroughTheGeoid) {
-    const auto geoid = [](const glm::dvec3& n) { return GeoidUndulation{50 * n.x}; };
+    const auto geoid = [](std::span<const glm::dvec3> n, std::span<GeoidUndulation> out) {
+        for (std::size_t i = 0; i < n.size(); ++i) out[i].m = 50 * n[i].x;
+    };
     const auto world = coarse_world();
     const auto fine = fine_patch(VerticalDatum::ellipsoid);
     EXPECT_THROW(LayeredField({world, fine}, VerticalDatum::egm96), Error);

@@ -343,7 +343,9 @@ TEST(ElevationSources, OneHillInThreeDatumsAndSystemsIsOneHill) {
         return h(p.y, p.x);
     });
     SourceOptions options;
-    options.geoid = undulation;
+    options.geoid = [](std::span<const glm::dvec3> n, std::span<GeoidUndulation> out) {
+        std::transform(n.begin(), n.end(), out.begin(), undulation);
+    };
     const auto ellipsoid = VerticalDatum::ellipsoid;
     const std::vector<SourceSpec> specs = {
         {folder / "egm96"}, {folder / "feet"}, {folder / "three_axes"}, {folder / "utm", ellipsoid}};

@@ -8,9 +8,10 @@
 #include <string>
 
 #include "bumpy_field.h"
+#include "planet/bake/bake.h"
 #include "planet/mesh/refine.h"
+#include "planet/mesh/segments.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/bake.h"
 
 namespace planet::testing {
 
@@ -44,8 +45,9 @@ class PatchyField final : public ElevationField {
     BumpyField bumps_{4e5, {glm::dvec3(1, 0, 0), 0}, 4e5};
 };
 
-inline BakeOptions patchy_options() {
+inline BakeOptions patchy_options(int first_tile_level = 12) {
     BakeOptions o;
+    o.first_tile_level = first_tile_level;
     o.undulation = bumpy_undulation;
     return o;
 }
@@ -95,6 +97,44 @@ inline std::uint64_t hash_of(const TileSource& tiles, const SplitTest& test) {
     add(mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]));
     add(mesh.cells.data(), mesh.cells.size() * sizeof(LocationCode));
     return h;
+}
+
+/// A store of PatchyField, baked once for each level at which tiles below the faces may begin.
+inline const ElevationStore& patchy_store(int first_tile_level = 12) {
+    static std::map<int, ElevationStore> baked;
+    const auto found = baked.find(first_tile_level);
+    if (found != baked.end()) return found->second;
+    return baked.emplace(first_tile_level, bake_in_memory(PatchyField(), patchy_options(first_tile_level)))
+        .first->second;
+}
+
+inline SegmentView view_from(const glm::dvec3& towards, double height, double K) {
+    SegmentView view;
+    view.test = {ecef_from_normal(wgs84, glm::normalize(towards), {height}), K};
+    view.culling.eye = view.test.eye;
+    return view;
+}
+
+/// Looking at a place from above it, 40 degrees wide.
+inline SegmentView narrow(SegmentView view) {
+    const glm::dvec3 down = -glm::normalize(view.test.eye);
+    const glm::dvec3 right = glm::normalize(glm::cross(down, glm::dvec3(0.3, -0.2, 0.9))), up = glm::cross(right, down);
+    const double s = std::sin(20 * degrees), c = std::cos(20 * degrees);
+    view.culling.inward = {s * down + c * right, s * down - c * right, s * down + c * up, s * down - c * up};
+    view.culling.occluder_radius = 6.33e6;
+    return view;
+}
+
+/// Over every patch, from far to near.
+inline std::vector<SegmentView> patchy_views() {
+    std::vector<SegmentView> list;
+    for (const PatchyField::Patch& p : PatchyField::patches)
+        for (const double height : {2e7, 1e6, 1e5, 1e4})
+            for (const bool whole : {true, false}) {
+                const SegmentView view = view_from(p.cap.centre + glm::dvec3(1e-4, 2e-4, -1e-4), height, 400);
+                list.push_back(whole ? view : narrow(view));
+            }
+    return list;
 }
 
 }  // namespace planet::testing

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bumpy_field.h"
+#include "planet/bake/bake.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/bake.h"
 #include "planet/store/planet_mesh.h"
 #include "planet/store/store_field.h"
 #include "planet/store/tile_sides.h"
@@ -61,7 +61,8 @@ struct Surface {
     std::map<LocationCode, Split> splits;  // of cells that can be split
     std::array<Vertex, 6> corners;         // of the octahedron
 
-    explicit Surface(const ElevationStore& store) : placement_{store.metadata().ellipsoid, 1.0} {
+    explicit Surface(const ElevationStore& store)
+        : placement_{store.metadata().ellipsoid, 1.0}, layers_(store.metadata().layers) {
         for (const LocationCode root : store.tiles()) tiles_.emplace(root, *store.read(root));
         for (int face = 0; face < face_count; ++face) {
             const LocationCode root = LocationCode::face_root(face);
@@ -92,7 +93,7 @@ struct Surface {
 
     void visit(LocationCode cell, const std::array<Vertex, 3>& corner) {
         if (cell.bisection_level() == 0) faces_[cell.face()] = corner;
-        const auto [root, local] = cell_in_tile(cell);
+        const auto [root, local] = cell_in_tile(cell, layers_);
         const auto tile = tiles_.find(root);
         const bool exists =
             tile != tiles_.end() && local >> tile->second.depth == 0 && tile->second.deviation[local] > 0;
@@ -111,6 +112,7 @@ struct Surface {
     }
 
     Placement placement_;
+    TileLayers layers_;
     std::map<LocationCode, Tile> tiles_;
     std::map<int, std::array<Vertex, 3>> faces_;
 };

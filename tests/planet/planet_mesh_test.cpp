@@ -10,10 +10,10 @@
 #include <set>
 
 #include "pedestrian_planet.h"
+#include "planet/bake/bake.h"
 #include "planet/error.h"
 #include "planet/mesh/surface_check.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/bake.h"
 #include "planet/store/store_field.h"
 #include "planet/store/tile_sides.h"
 
@@ -51,7 +51,7 @@ PlanetMesh within(PlanetLattice& lattice, double max_deviation) {
 void expect_own_deviations(const ElevationStore& store, const Surface& surface) {
     PlanetLattice lattice(store);
     for (const auto& [cell, s] : surface.splits) {
-        const auto [root, local] = cell_in_tile(cell);
+        const auto [root, local] = cell_in_tile(cell, store.metadata().layers);
         const double own = static_cast<double>(lattice.own_deviation(*lattice.tile(root), local));
         ASSERT_GE(own, s.own) << to_string(cell);
         ASSERT_LE(own, s.own * (1 + 3e-7) + 2e-8) << to_string(cell);

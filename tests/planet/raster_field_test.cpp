@@ -6,6 +6,7 @@
 #include <random>
 
 #include "planet/error.h"
+#include "planet/geodesy/angles.h"
 #include "raster_files.h"
 
 namespace planet {

@@ -10,10 +10,10 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "planet/bake/bake.h"
+#include "planet/bake/coverage.h"
 #include "planet/mesh/deviation.h"
-#include "planet/store/bake.h"
 #include "planet/store/baked_tile.h"
-#include "planet/store/coverage.h"
 #include "planet/store/ladder.h"
 #include "planet/store/surface_cursor.h"
 #include "planet/store/tile_codec.h"
@@ -57,6 +57,7 @@ struct LinkedTile {
     std::vector<std::uint8_t> exists;
     std::array<std::int32_t, 3> beside;
     std::int32_t above = -1;
+    unsigned local_above = 0;
     std::vector<std::int32_t> below;
     bool inner() const { return !below.empty(); }
 };
@@ -68,17 +69,18 @@ inline std::int32_t find(const TileIndex& index, LocationCode root) {
     return found == index.end() ? -1 : found->second;
 }
 
-inline void tie_tile(std::vector<LinkedTile>& tiles, const TileIndex& index, std::size_t t) {
+inline void tie_tile(std::vector<LinkedTile>& tiles, const TileIndex& index, TileLayers layers, std::size_t t) {
     LinkedTile& tile = tiles[t];
     const LocationCode root = tile.tile.root;
     for (const Side side : {Side::split, Side::left_leg, Side::right_leg})
         tile.beside[static_cast<std::size_t>(side)] = find(index, neighbor(root, side));
     if (root.bisection_level() == 0) return;
-    tile.above = find(index, root.ancestor(root.bisection_level() - tile_levels));
+    tile.above = find(index, layers.above(root));
+    tile.local_above = layers.local_above(root);
     assert(tile.above >= 0);
     LinkedTile& parent = tiles[static_cast<std::size_t>(tile.above)];
-    const std::uint64_t position = root.bits() & (tile_cells - 1);
-    parent.below.resize(tile_cells, -1);
+    const unsigned position = layers.position(root);
+    parent.below.resize(std::size_t{1} << parent.tile.depth, -1);
     parent.below[position] = static_cast<std::int32_t>(t);
     parent.tile.child_exists.set(position);
 }
@@ -88,14 +90,12 @@ inline bool may_exist(const std::vector<LinkedTile>& tiles, const LinkedTile& ti
     if (i >> tile.tile.depth) return false;
     if (i > 1) return tile.exists[i >> 1];
     if (tile.above < 0) return true;
-    const unsigned above = tile_cells | static_cast<unsigned>(tile.tile.root.bits() & (tile_cells - 1));
-    return tiles[static_cast<std::size_t>(tile.above)].exists[above >> 1];
+    return tiles[static_cast<std::size_t>(tile.above)].exists[tile.local_above >> 1];
 }
 
 // The other tile of a side cell, if it is there, and the cell's local index in it.
 inline std::pair<std::int32_t, unsigned> across(const LinkedTile& tile, SideCell s) {
-    const CellInTile other = cell_in_tile(neighbor(cell_code(tile.tile.root, s.cell)));
-    return {tile.beside[static_cast<std::size_t>(s.side)], other.local};
+    return {tile.beside[static_cast<std::size_t>(s.side)], local_across(s.cell)};
 }
 
 inline void find_existence(std::vector<LinkedTile>& tiles, LinkedTile& tile, int level) {
@@ -123,7 +123,7 @@ inline std::vector<LinkedTile> tie_tiles(const TilePlan& planned, const std::vec
         tiles[t].exists.assign(std::size_t{1} << planned.depth(plan[t]), 0);
         index.emplace(plan[t].bits(), static_cast<std::int32_t>(t));
     }
-    for (std::size_t t = 0; t < tiles.size(); ++t) tie_tile(tiles, index, t);
+    for (std::size_t t = 0; t < tiles.size(); ++t) tie_tile(tiles, index, planned.layers(), t);
     // From the coarsest level down: a level needs the one above it in every tile.
     for (std::size_t begin = 0; begin < tiles.size();) {
         const int root_level = tiles[begin].tile.root.bisection_level();
@@ -143,7 +143,7 @@ inline void raise_over_tiles(std::span<LinkedTile> tiles, LinkedTile& tile, unsi
     const glm::vec3& m = tile.rounded[tile_layout().split_vertex[i]];
     double reach = 0;
     for (unsigned child = 2 * i; child < 2 * i + 2; ++child) {
-        const std::int32_t below = tile.below[child - tile_cells];
+        const std::int32_t below = tile.below[child - (1u << tile.tile.depth)];
         if (below < 0) continue;
         const LinkedTile& b = tiles[static_cast<std::size_t>(below)];
         if (!b.exists[1]) continue;
@@ -164,7 +164,7 @@ inline void settle_inside(std::span<LinkedTile> tiles, LinkedTile& tile, int lev
     const TileLayout& layout = tile_layout();
     const Saturation s{layout, tile.tile.depth, tile.tile.deviation, tile.tile.radius, tile.rounded, tile.exists};
     const unsigned first = 1u << level;
-    const bool above_tiles = tile.inner() && level == tile_levels - 1;
+    const bool above_tiles = tile.inner() && level == tile.tile.depth - 1;
     for (unsigned i = first; i < 2 * first; ++i) {
         s.raise(i);
         if (above_tiles) raise_over_tiles(tiles, tile, i);
@@ -196,9 +196,9 @@ inline void settle_sides(std::span<LinkedTile> tiles, std::size_t t, int level) 
 
 // What a tile knows of those below it.
 inline void note_children(std::span<const LinkedTile> tiles, LinkedTile& tile) {
-    tile.tile.child_deviation.assign(tile_cells, 0);
-    tile.tile.child_radius.assign(tile_cells, 0);
-    for (std::size_t k = 0; k < tile_cells; ++k) {
+    tile.tile.child_deviation.assign(tile.below.size(), 0);
+    tile.tile.child_radius.assign(tile.below.size(), 0);
+    for (std::size_t k = 0; k < tile.below.size(); ++k) {
         if (tile.below[k] < 0) continue;
         const LinkedTile& below = tiles[static_cast<std::size_t>(tile.below[k])];
         if (!below.exists[1]) continue;
@@ -259,7 +259,9 @@ class ReferenceBake {
         const TilePlan plan = coverage(field_, {.mean_radius_m = options_.ellipsoid.mean_radius(),
                                                 .least_level = options_.least_level,
                                                 .finest_level = options_.finest_level,
-                                                .extra_levels = options_.extra_levels});
+                                                .extra_levels = options_.extra_levels,
+                                                .first_tile_level = options_.first_tile_level});
+        layers_ = plan.layers();
         tiles_ = tie_tiles(plan, all_roots(plan));
         for (LinkedTile& t : tiles_) {
             lattice_.set_normals(corners(t.tile.root), t.tile.depth);
@@ -290,7 +292,7 @@ class ReferenceBake {
         if (has_undulation_) sample_undulations(tile);
         if (baked.above < 0) return;
         const Tile& above = tiles_[static_cast<std::size_t>(baked.above)].tile;
-        const auto& corner = tile_layout().corners[tile_cells | (tile.root.bits() & (tile_cells - 1))];
+        const auto& corner = tile_layout().corners[baked.local_above];
         for (std::size_t v = 0; v < 3; ++v) {
             tile.height[v] = above.height[corner[v]];
             if (has_undulation_) tile.undulation[v] = above.undulation[corner[v]];
@@ -318,7 +320,7 @@ class ReferenceBake {
         tile.deviation.resize(baked.exists.size());
         tile.radius.resize(baked.exists.size());
         own_deviation(lattice_, tile.deviation);
-        lacks_below_.assign(tile_cells / 2, 1);
+        lacks_below_.assign(baked.exists.size() / 2, 1);
         if (baked.inner())
             for (std::size_t k = 0; k < lacks_below_.size(); ++k)
                 lacks_below_[k] = !(exists_below(baked, 2 * k) && exists_below(baked, 2 * k + 1));
@@ -344,7 +346,7 @@ class ReferenceBake {
         }
         std::int32_t holder = baked.above;
         for (int level = levels - 1; level >= 0; --level) {
-            const auto [tile_root, local] = cell_in_tile(root.ancestor(level));
+            const auto [tile_root, local] = cell_in_tile(root.ancestor(level), layers_);
             Tile& tile = tiles_[static_cast<std::size_t>(holder)].tile;
             const float found = certified_deviation(
                 deviation_from(lattice_, plane_of(tile, local, above_[static_cast<std::size_t>(level)])));
@@ -392,6 +394,7 @@ class ReferenceBake {
     Placement placement_;
     double quantum_;
     bool has_undulation_ = false;
+    TileLayers layers_;
     std::vector<LinkedTile> tiles_;
     TileLattice lattice_;
     std::vector<glm::dvec3> normals_;

@@ -1,4 +1,4 @@
-#include "planet/store/sample_distance.h"
+#include "planet/bake/sample_distance.h"
 
 #include <gtest/gtest.h>
 

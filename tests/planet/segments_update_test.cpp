@@ -10,7 +10,7 @@
 #include "planet/frames.h"
 #include "planet/mesh/refine.h"
 #include "planet/mesh/segments.h"
-#include "planet/store/store_tiles.h"
+#include "planet/streaming/store_tiles.h"
 
 namespace planet {
 namespace {

@@ -11,8 +11,8 @@
 #include "patchy_store.h"
 #include "planet/mesh/segments.h"
 #include "planet/mesh/surface_check.h"
-#include "planet/store/resident_tiles.h"
-#include "planet/store/store_tiles.h"
+#include "planet/streaming/resident_tiles.h"
+#include "planet/streaming/store_tiles.h"
 
 namespace planet {
 namespace {

@@ -12,9 +12,9 @@
 #include <thread>
 
 #include "bumpy_field.h"
+#include "planet/bake/bake.h"
 #include "planet/error.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/bake.h"
 #include "planet/store/byte_stream.h"
 #include "planet/store/store_field.h"
 #include "planet/store/tile_cache.h"

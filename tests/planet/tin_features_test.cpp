@@ -227,5 +227,28 @@ TEST(TinMaking, RefusesAToleranceOutOfRange) {
     EXPECT_THROW(make_tin(rough_grid(10, 10), {.tolerance = std::nan("")}), Error);
 }
 
+TEST(TinMask, WindowsAgreeWithTheWhole) {
+    const Raster raster = metric_raster(50, 40);
+    const std::vector<Polygon> mask{{{{1003, 1998, 0}, {1380, 1955, 0}, {1222, 1631, 0}, {1003, 1998, 0}}, {}},
+                                    {{{1300, 1700, 0}, {1495, 1700, 0}, {1495, 1605, 0}, {1300, 1700, 0}}, {}}};
+    HeightGrid whole(raster);
+    keep_within(whole, raster, mask);
+    for (const glm::ivec2 first : {glm::ivec2(0, 0), {7, 11}, {30, 20}}) {
+        HeightGrid window(HeightGrid(raster), first, first + glm::ivec2(19, 19));
+        keep_window_within(window, first, raster, mask);
+        for (int y = 0; y < 20; ++y)
+            for (int x = 0; x < 20; ++x)
+                EXPECT_EQ(window.valid({x, y}), whole.valid(first + glm::ivec2(x, y))) << x << ',' << y;
+    }
+    HeightGrid nothing(HeightGrid(raster), {0, 30}, {5, 39});
+    EXPECT_NO_THROW(keep_window_within(nothing, {0, 30}, raster, mask));
+    EXPECT_EQ(nothing.valid_samples(), 0u);
+}
+
+TEST(MakeTin, ALargeToleranceDoesNotShowTheTiles) {
+    const HeightGrid grid = rough_grid(600, 600);
+    EXPECT_EQ(make_tin(grid, {.tolerance = 1e6}).mesh.triangles.size(), 2u);
+}
+
 }  // namespace
 }  // namespace planet

@@ -284,5 +284,23 @@ TEST(TinErrorGrid, CellsFindWhatNaiveSearchFinds) {
     }
 }
 
+TEST(TinErrorGrid, AsAMeasureMakesTheSameTinUnderABudget) {
+    HeightGrid grid = rough_grid(70, 60);
+    for (int y = 20; y < 26; ++y)
+        for (int x = 30; x < 41; ++x) grid.set({x, y}, nan);
+    for (const std::size_t triangles : {200u, 301u, 500u}) {
+        const Made plain = make(grid, budget(triangles));
+        for (const LocateWay way : {LocateWay::naive, LocateWay::cells, LocateWay::spans}) {
+            const auto measure = make_error_grid_measure(grid, way);
+            GreedyOptions options = budget(triangles);
+            options.measure = measure.get();
+            const Made made = make(grid, options);
+            EXPECT_EQ(made.tin.triangles, plain.tin.triangles);
+            EXPECT_EQ(made.report.taken_back, plain.report.taken_back);
+            EXPECT_EQ(made.report.deviation_max, plain.report.deviation_max);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace planet

@@ -139,5 +139,57 @@ TEST(TinWritten, MoreSamplesGoIn) {
         EXPECT_NE(std::find(refined.vertices.begin(), refined.vertices.end(), p), refined.vertices.end());
 }
 
+TEST(TinWritten, TellsOfEverySample) {
+    const auto raster = geographic_raster(60, 50);
+    HeightGrid grid(*raster);
+    for (int x = 20; x < 33; ++x) grid.set({x, 17}, std::nanf(""));
+    const TinMesh mesh = make_tin(grid, {.tolerance = 10}).mesh;
+    const RasterFrame frame = frame_of(raster, MeshFrame::source);
+    const WrittenDeviation d =
+        measure_written(mesh, surface_from_tin(mesh, grid, frame).vertices, grid, frame, 0, true);
+    ASSERT_EQ(d.by_sample.size(), grid.count());
+    float most = 0;
+    std::size_t known = 0;
+    for (const float off : d.by_sample) {
+        if (std::isnan(off)) continue;
+        ++known;
+        most = std::max(most, off);
+    }
+    EXPECT_EQ(known, d.samples);
+    EXPECT_NEAR(static_cast<double>(most), d.max, 1e-6);
+    EXPECT_TRUE(measure_written(mesh, surface_from_tin(mesh, grid, frame).vertices, grid, frame).by_sample.empty());
+}
+
+// The frame of a window: the same places, to the bit.
+TEST(TinWritten, WindowsLieWhereTheyWere) {
+    const auto raster = geographic_raster(60, 50);
+    const HeightGrid grid(*raster), part(grid, {13, 7}, {40, 33});
+    const TinMesh mesh = make_tin(part, {.tolerance = 10}).mesh;
+    TinMesh moved = mesh;
+    for (glm::ivec2& p : moved.vertices) p += glm::ivec2(13, 7);
+    for (const MeshFrame kind : {MeshFrame::source, MeshFrame::utm, MeshFrame::enu, MeshFrame::ecef}) {
+        const RasterFrame frame = frame_of(raster, kind), window = frame.window({13, 7});
+        const SurfaceMesh here = surface_from_tin(mesh, part, window), there = surface_from_tin(moved, grid, frame);
+        EXPECT_EQ(here.vertices, there.vertices);
+        const WrittenDeviation d = measure_written(mesh, here.vertices, part, window),
+                               e = measure_written(moved, there.vertices, grid, frame);
+        EXPECT_NEAR(d.max, e.max, 1e-6);
+        EXPECT_LE(d.max, 10.01);
+    }
+}
+
+TEST(TinWritten, ExaggeratedDeviationsAreMetresOfHeight) {
+    const auto raster = geographic_raster(60, 50);
+    const HeightGrid grid(*raster);
+    const TinMesh mesh = make_tin(grid, {.tolerance = 10}).mesh;
+    for (const MeshFrame kind : {MeshFrame::source, MeshFrame::utm}) {
+        const RasterFrame plain = frame_of(raster, kind), tall(raster, kind, VerticalDatum::ellipsoid, nullptr, 4);
+        const SurfaceMesh low = surface_from_tin(mesh, grid, plain), high = surface_from_tin(mesh, grid, tall);
+        EXPECT_EQ(4 * low.vertices[9].z, high.vertices[9].z);
+        EXPECT_NEAR(measure_written(mesh, low.vertices, grid, plain).max,
+                    measure_written(mesh, high.vertices, grid, tall).max, 1e-6);
+    }
+}
+
 }  // namespace
 }  // namespace planet

@@ -8,10 +8,10 @@
 
 #include <unordered_map>
 
+#include "planet/bake/bake.h"
 #include "planet/elevation/layered_field.h"
 #include "planet/elevation/raster_field.h"
 #include "planet/geodesy/geoid.h"
-#include "planet/store/bake.h"
 #include "render/app/data_path.h"
 #include "tests/render/app/earth_views.h"
 #include "tests/render/app/segment_triangles.h"
@@ -45,7 +45,7 @@ std::shared_ptr<const planet::ElevationStore> bake_thinned() {
 /// All finest vertices at their true heights.
 class FinestLattice {
   public:
-    FinestLattice(const planet::ElevationStore& store, double exaggeration) {
+    FinestLattice(const planet::ElevationStore& store, double exaggeration) : layers_(store.metadata().layers) {
         const planet::Placement placement{store.metadata().ellipsoid, exaggeration};
         for (const planet::LocationCode root : store.tiles()) {
             Tile& t = tiles_[root.bits()];
@@ -61,7 +61,9 @@ class FinestLattice {
     /// Calls visit(position, normal) for every vertex in a cell but its corners, those on its sides included.
     template <class Visit>
     void visit_below(planet::LocationCode cell, Visit&& visit) const {
-        const int level = cell.bisection_level(), in_tile = level == 0 ? 0 : (level - 1) % planet::tile_levels + 1;
+        // Of two tiles that hold the cell as a corner, the upper one.
+        const int level = cell.bisection_level();
+        const int in_tile = level == 0 ? 0 : level - layers_.root_level(level - 1);
         const Tile& t = tiles_.at(cell.bits() >> in_tile);
         this->visit(t, static_cast<unsigned>(cell.bits() & ((1u << in_tile) - 1)) | 1u << in_tile, visit);
     }
@@ -75,8 +77,8 @@ class FinestLattice {
     template <class Visit>
     void visit(const Tile& t, unsigned i, Visit&& visit_vertex) const {
         if (i >> t.tile.depth) {
-            if (t.tile.depth == planet::tile_levels && t.tile.child_exists[i - planet::tile_cells])
-                visit(tiles_.at(t.tile.root.bits() << planet::tile_levels | (i - planet::tile_cells)), 1, visit_vertex);
+            if (const unsigned k = i - (1u << t.tile.depth); t.tile.child_exists[k])
+                visit(tiles_.at(layers_.below(t.tile.root, k).bits()), 1, visit_vertex);
             return;
         }
         if (!(t.tile.deviation[i] > 0)) return;
@@ -86,6 +88,7 @@ class FinestLattice {
         visit(t, 2 * i + 1, visit_vertex);
     }
 
+    planet::TileLayers layers_;
     std::unordered_map<std::uint64_t, Tile> tiles_;
 };
 

@@ -14,7 +14,7 @@
 #include "planet/mesh/segments.h"
 #include "planet/octahedron/octahedron_map.h"
 #include "planet/store/store_field.h"
-#include "planet/store/store_tiles.h"
+#include "planet/streaming/store_tiles.h"
 #include "render/app/earth_store.h"
 #include "render/gl/context.h"
 #include "render/gl/framebuffer.h"

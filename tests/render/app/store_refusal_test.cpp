@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <csignal>
 
+#include "planet/bake/bake.h"
 #include "planet/elevation/constant_field.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "planet/store/bake.h"
 #include "render/app/bake_sources.h"
 #include "render/app/earth_store.h"
 #include "tests/render/app/baked_store.h"

@@ -1,0 +1,253 @@
+#include "planet/streaming/resident_set.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "planet/parallel.h"
+#include "planet/store/tile_sides.h"
+
+namespace planet {
+
+namespace {
+
+constexpr Side sides[] = {Side::split, Side::left_leg, Side::right_leg};
+
+std::size_t memory_of(const ResidentTile& tile) {
+    return tile.tile->bytes() + (tile.support.size() + tile.below.size()) * sizeof(ResidentTile*);
+}
+
+}  // namespace
+
+const PlacedTile* ResidentSet::tile(LocationCode root) const {
+    const auto found = tiles_.find(root.bits());
+    return found == tiles_.end() ? nullptr : found->second.tile.get();
+}
+
+ResidentTile* ResidentSet::find(LocationCode root) {
+    const auto found = tiles_.find(root.bits());
+    return found == tiles_.end() || !found->second.tile ? nullptr : &found->second;
+}
+
+std::vector<ResidentTile*> ResidentSet::all() {
+    std::vector<ResidentTile*> list;
+    list.reserve(size_);
+    for (auto& [code, tile] : tiles_)
+        if (tile.tile) list.push_back(&tile);
+    return list;
+}
+
+ResidentTile& ResidentSet::slot(LocationCode root) {
+    const auto [at, added] = tiles_.try_emplace(root.bits());
+    if (added) {
+        at->second.root = root;
+        bytes_ += sizeof(ResidentTile);
+    }
+    return at->second;
+}
+
+void ResidentSet::free_if_unused(ResidentTile& tile) {
+    if (tile.tile || tile.supported > 0) return;
+    bytes_ -= sizeof(ResidentTile);
+    tiles_.erase(tile.root.bits());
+}
+
+ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile, std::span<const LocationCode> support) {
+    ResidentTile& resident = slot(tile->root);
+    assert(!resident.tile);
+    tile->close();
+    tile->set_no_children();
+    resident.below.assign(tile->child_bound.size(), nullptr);
+    resident.tile = std::move(tile);
+    resident.fresh = true;
+    tie(resident, support);
+    ++size_;
+    bytes_ += memory_of(resident);
+    unsettle(resident, 0);
+    changes_.push_back(resident.root);
+    return resident;
+}
+
+void ResidentSet::tie(ResidentTile& tile, std::span<const LocationCode> support) {
+    const LocationCode root = tile.root;
+    if (root.bisection_level() > 0) {
+        tile.above = find(layers_.above(root));
+        assert(tile.above);
+        const unsigned position = layers_.position(root);
+        tile.above->tile->set_child(position, tile.tile.get());
+        tile.above->below[tile.above->tile->child_bound.index(position)] = &tile;
+        ++tile.above->children;
+    }
+    for (const Side side : sides) {
+        ResidentTile* const beside = find(neighbor(root, side));
+        tile.beside[static_cast<std::size_t>(side)] = beside;
+        for (const Side back : sides)
+            if (beside && neighbor(beside->root, back) == root) beside->beside[static_cast<std::size_t>(back)] = &tile;
+    }
+    tile.support.reserve(support.size());
+    for (const LocationCode other : support) {
+        tile.support.push_back(&slot(other));
+        ++tile.support.back()->supported;
+    }
+}
+
+void ResidentSet::untie(ResidentTile& tile) {
+    for (ResidentTile* const beside : tile.beside)
+        if (beside)
+            std::replace(beside->beside.begin(), beside->beside.end(), &tile, static_cast<ResidentTile*>(nullptr));
+    if (tile.above) {
+        const unsigned position = layers_.position(tile.root);
+        tile.above->tile->set_child(position, nullptr);
+        tile.above->below[tile.above->tile->child_bound.index(position)] = nullptr;
+        --tile.above->children;
+    }
+    for (ResidentTile* const support : std::exchange(tile.support, {})) {
+        --support->supported;
+        free_if_unused(*support);
+    }
+    tile.above = nullptr;
+    tile.beside = {};
+}
+
+void ResidentSet::erase(LocationCode root) {
+    ResidentTile& tile = *find(root);
+    assert(tile.children == 0);
+    for (const SideCell& s : side_cells(tile.tile->depth)) {
+        ResidentTile* const beside = tile.beside[static_cast<std::size_t>(s.side)];
+        if (beside && tile.tile->is_open(s.cell)) set_open(*beside, local_across(s.cell), false);
+    }
+    for (int level = 0; level < tile_levels; ++level)
+        if (std::exchange(tile.unsettled[static_cast<std::size_t>(level)], false))
+            std::erase(unsettled_[static_cast<std::size_t>(root.bisection_level() + level)], &tile);
+    --size_;
+    bytes_ -= memory_of(tile);
+    untie(tile);
+    tile.tile.reset();
+    tile.below = {};
+    free_if_unused(tile);
+    changes_.push_back(root);
+}
+
+void ResidentSet::unsettle(ResidentTile& tile, int level) {
+    bool& unsettled = tile.unsettled[static_cast<std::size_t>(level)];
+    if (std::exchange(unsettled, true)) return;
+    unsettled_[static_cast<std::size_t>(tile.root.bisection_level() + level)].push_back(&tile);
+}
+
+void ResidentSet::settle() {
+    for (std::size_t level = 0; level < unsettled_.size(); ++level) {
+        for (ResidentTile* const tile : std::exchange(unsettled_[level], {})) {
+            const int relative = static_cast<int>(level) - tile->root.bisection_level();
+            tile->unsettled[static_cast<std::size_t>(relative)] = false;
+            settle_level(*tile, relative);
+        }
+    }
+}
+
+void ResidentSet::settle_level(ResidentTile& tile, int level) {
+    const TileLayout& layout = tile_layout();
+    const PlacedTile& placed = *tile.tile;
+    if (level >= placed.depth) return;
+    const unsigned first = 1u << level;
+    for (unsigned i = first; i < 2 * first; ++i) {
+        const unsigned beyond = layout.split_neighbor[i];
+        if (i >= beyond || !placed.is_stored(i)) continue;
+        const bool open = placed.is_open(i >> 1) && placed.is_open(beyond >> 1);
+        if (open == placed.is_open(i)) continue;
+        set_open(tile, i, open);
+        if (!tile.fresh) changes_.push_back(cell_code(placed.root, beyond));
+        if (level == placed.depth - 1) unsettle_below(tile, beyond);
+    }
+    for (const SideCell& s : side_cells(level + 1))
+        if (s.cell >= first) settle_side(tile, s.cell, tile.beside[static_cast<std::size_t>(s.side)]);
+}
+
+// Whether the tile has the cell's record and the diamond of the cell's parent exists.
+bool ResidentSet::may_open(const ResidentTile& tile, unsigned local) const {
+    if (local >> tile.tile->depth || !tile.tile->is_stored(local)) return false;
+    if (local > 1) return tile.tile->is_open(local >> 1);
+    return !tile.above || tile.above->tile->is_open(layers_.local_above(tile.root) >> 1);
+}
+
+void ResidentSet::settle_side(ResidentTile& tile, unsigned local, ResidentTile* beside) {
+    const unsigned beyond = local_across(local);
+    const bool open = beside && may_open(tile, local) && may_open(*beside, beyond);
+    if (open == tile.tile->is_open(local)) return;
+    set_open(tile, local, open);
+    if (beside) set_open(*beside, beyond, open);
+}
+
+void ResidentSet::set_open(ResidentTile& tile, unsigned local, bool open) {
+    tile.tile->set_open(local, open);
+    if (!tile.fresh) changes_.push_back(cell_code(tile.root, local));
+    const int below = relative_level(local) + 1;
+    if (below < tile.tile->depth)
+        unsettle(tile, below);
+    else
+        unsettle_below(tile, local);
+}
+
+void ResidentSet::unsettle_below(ResidentTile& tile, unsigned local) {
+    if (tile.children == 0) return;
+    const unsigned first = tile.tile->position_below(2 * local);
+    for (const unsigned k : {first, first + 1})
+        if (tile.tile->child_bound.has(k))
+            if (ResidentTile* const below = tile.below[tile.tile->child_bound.index(k)]) unsettle(*below, 0);
+}
+
+std::vector<LocationCode> ResidentSet::take_changes() {
+    const auto begin = [](LocationCode cell) { return cell.first_at(max_bisection_level); };
+    std::sort(changes_.begin(), changes_.end(), [&](LocationCode a, LocationCode b) {
+        return begin(a) != begin(b) ? begin(a) < begin(b) : a.bisection_level() < b.bisection_level();
+    });
+    std::vector<LocationCode> outermost;
+    for (const LocationCode cell : changes_) {
+        if (outermost.empty() || !outermost.back().contains(cell)) outermost.push_back(cell);
+        if (ResidentTile* const tile = layers_.begin_at(cell.bisection_level()) ? find(cell) : nullptr)
+            tile->fresh = false;
+    }
+    changes_.clear();
+    return outermost;
+}
+
+void ResidentSet::place(const Placement& placement, unsigned threads) {
+    const std::vector<ResidentTile*> tiles = all();
+    parallel_for(tiles.size(), threads, [&](std::size_t i) {
+        tiles[i]->tile = std::make_unique<PlacedTile>(*tiles[i]->tile, placement);
+        tiles[i]->tile->set_no_children();
+    });
+    bytes_ = 0;
+    for (ResidentTile* const t : tiles) {
+        bytes_ += memory_of(*t);
+        if (t->above)
+            t->above->tile->set_child(layers_.position(t->root), t->tile.get());
+        else
+            changes_.push_back(t->root);
+    }
+}
+
+std::vector<LocationCode> tile_support(LocationCode root, int depth) {
+    std::vector<LocationCode> support;
+    // Diamonds inside the tile depend, within it, on those of its sides. What these depend on, from the finest level up.
+    const auto side = side_cells(depth);
+    std::size_t next_side = side.size();
+    std::vector<LocationCode> diamonds, above;
+    for (int level = depth - 1; level >= 0; --level) {
+        for (; next_side > 0 && side[next_side - 1].cell >= 1u << level; --next_side)
+            diamonds.push_back(diamond(cell_code(root, side[next_side - 1].cell)));
+        std::sort(diamonds.begin(), diamonds.end());
+        diamonds.erase(std::unique(diamonds.begin(), diamonds.end()), diamonds.end());
+        above.clear();
+        for (const LocationCode cell : diamonds)
+            for (const LocationCode half : {cell, neighbor(cell)}) {
+                const LocationCode holder = half.ancestor(root.bisection_level());
+                if (holder == root) continue;
+                if (std::find(support.begin(), support.end(), holder) == support.end()) support.push_back(holder);
+                if (level > 0) above.push_back(diamond(half.parent()));
+            }
+        std::swap(diamonds, above);
+    }
+    return support;
+}
+
+}  // namespace planet

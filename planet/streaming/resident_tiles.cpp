@@ -1,0 +1,216 @@
+#include "planet/streaming/resident_tiles.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include "planet/streaming/view_needs.h"
+
+namespace planet {
+
+namespace {
+
+constexpr std::size_t typical_tile_bytes = 100'000;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+bool needs_the_same(const SegmentView& a, const SegmentView& b) {
+    return a.test.eye == b.test.eye && a.test.K == b.test.K && a.culling.eye == b.culling.eye &&
+           a.culling.inward == b.culling.inward && a.culling.occluder_radius == b.culling.occluder_radius &&
+           a.segment_angle == b.segment_angle && a.radius_m == b.radius_m;
+}
+
+// Of a face that cannot be read nothing is known but that it is there.
+bool may_show(const PlacedTile& face, const SegmentView& view) {
+    constexpr double relief = 2e4;
+    const glm::dvec3 centre = ecef_from_grid(face.position[3]);
+    double radius = 0;
+    for (std::size_t v = 0; v < 3; ++v)
+        radius = std::max(radius, glm::distance(centre, ecef_from_grid(face.position[v])));
+    return !view.culling.hidden(centre, radius + relief);
+}
+
+}  // namespace
+
+SegmentView view_ahead(const SegmentView& view, const glm::dvec3& velocity_m_s, double seconds) {
+    SegmentView ahead = view;
+    ahead.test.eye += velocity_m_s * seconds;
+    ahead.culling.eye += velocity_m_s * seconds;
+    return ahead;
+}
+
+ResidentTiles::ResidentTiles(const TileCache& cache, const Placement& placement, unsigned threads,
+                             const TileReader* reader)
+    : cache_(cache),
+      reader_(reader ? *reader : cache),
+      placement_(placement),
+      set_(cache.store().metadata().layers),
+      loader_([this](LocationCode root) { return load(root); }, threads) {
+    std::vector<TileRequest> faces;
+    for (int face = 0; face < face_count; ++face) faces.push_back({LocationCode::face_root(face), 0});
+    loader_.request(faces);
+    while (set_.size() < face_count) {
+        loader_.wait();
+        take_in();
+    }
+    set_.settle();
+    count_memory();
+}
+
+ResidentTiles::~ResidentTiles() {
+    cache_.count_drawn_bytes(-static_cast<std::ptrdiff_t>(counted_bytes_));
+}
+
+// On the loader's threads.
+LoadedTile ResidentTiles::load(LocationCode root) const {
+    const std::shared_ptr<const Tile> tile = reader_.tile(root);
+    LoadedTile loaded{root, nullptr, tile && tile->damaged, {}};
+    if (tile && (!tile->damaged || root.bisection_level() == 0)) {
+        loaded.tile = std::make_unique<PlacedTile>(*tile, placement_);
+        loaded.support = tile_support(root, tile->depth);
+    }
+    return loaded;
+}
+
+void ResidentTiles::take_in() {
+    for (LoadedTile& loaded : loader_.take()) take_in(std::move(loaded));
+}
+
+void ResidentTiles::take_in(LoadedTile loaded) {
+    asked_ = false;
+    if (loaded.damaged) damaged_.insert(loaded.root.bits());
+    if (!loaded.tile) {
+        absent_.insert(loaded.root.bits());
+        return;
+    }
+    ++loaded_;
+    // The tile above may have been dropped meanwhile: then nothing needs this one.
+    if (loaded.root.bisection_level() > 0 && !set_.find(layers().above(loaded.root))) return;
+    set_.insert(std::move(loaded.tile), loaded.support);
+}
+
+bool ResidentTiles::up_to_date(const SegmentView& view, const SegmentView* ahead) const {
+    if (!asked_ || !needs_the_same(view, view_) || (ahead != nullptr) != ahead_.has_value()) return false;
+    return !ahead || needs_the_same(*ahead, *ahead_);
+}
+
+std::span<const LocationCode> ResidentTiles::update(const SegmentView& view, const SegmentView* ahead) {
+    take_in();
+    if (!up_to_date(view, ahead)) {
+        view_ = view;
+        ahead_ = ahead ? std::optional(*ahead) : std::nullopt;
+        ask(view, ahead);
+        keep_within_limit();
+        set_.settle();
+        count_memory();
+        asked_ = true;
+    }
+    changes_ = set_.take_changes();
+    return changes_;
+}
+
+void ResidentTiles::ask(const SegmentView& view, const SegmentView* ahead) {
+    residency_ = {};
+    ViewNeeds needs(set_, &ResidentTile::needed, needed_mark_ = ++mark_);
+    needs.add(view);
+    std::vector<TileRequest> requests;
+    for (const MissingTile& m : needs.missing()) {
+        const bool damaged = damaged_.contains(m.root.bits());
+        if (!damaged && absent_.contains(m.root.bits())) continue;
+        ++(damaged ? residency_.damaged : residency_.pending);
+        residency_.hidden_deviation_m = std::max(residency_.hidden_deviation_m, static_cast<double>(m.deviation));
+        residency_.hidden_ratio = std::max(residency_.hidden_ratio, m.ratio);
+        if (!damaged) requests.push_back({m.root, m.ratio});
+    }
+    for (int face = 0; face < face_count; ++face)
+        if (const PlacedTile& t = *set_.tile(LocationCode::face_root(face)); t.damaged && may_show(t, view)) {
+            ++residency_.damaged;
+            residency_.hidden_deviation_m = residency_.hidden_ratio = infinity;
+        }
+    if (ahead) ask_ahead(*ahead, requests);
+    loader_.request(std::move(requests));
+}
+
+// Within the limit, and after all that is needed now.
+void ResidentTiles::ask_ahead(const SegmentView& ahead, std::vector<TileRequest>& requests) {
+    ViewNeeds needs(set_, &ResidentTile::wanted, wanted_mark_ = ++mark_);
+    needs.add(ahead);
+    std::size_t bytes = requests.size() * typical_tile_bytes;
+    for (const ResidentTile* t : set_.all())
+        if (is_held(*t)) bytes += t->tile->bytes();
+    std::vector<MissingTile> missing = needs.missing();
+    std::sort(missing.begin(), missing.end(), [](const MissingTile& a, const MissingTile& b) {
+        return a.ratio > b.ratio || (a.ratio == b.ratio && a.root < b.root);
+    });
+    for (const MissingTile& m : missing) {
+        bytes += typical_tile_bytes;
+        if (bytes > cache_.memory_limit_bytes()) break;
+        if (!absent_.contains(m.root.bits())) requests.push_back({m.root, -1 / m.ratio});
+    }
+}
+
+bool ResidentTiles::is_held(const ResidentTile& tile) const {
+    return tile.needed == needed_mark_ || (ahead_ && tile.wanted == wanted_mark_);
+}
+
+// Drops tiles that neither view needs, those first that were needed or wanted last the longest ago.
+void ResidentTiles::keep_within_limit() {
+    const std::size_t limit = cache_.memory_limit_bytes();
+    if (set_.bytes() <= limit) return;
+    const auto last = [](const ResidentTile* t) { return std::max(t->needed, t->wanted); };
+    std::vector<ResidentTile*> free;
+    for (ResidentTile* t : set_.all())
+        if (t->root.bisection_level() > 0 && !is_held(*t)) free.push_back(t);
+    // A tile is needed whenever one below it is: of equals, the deeper goes first.
+    std::sort(free.begin(), free.end(), [&](const ResidentTile* a, const ResidentTile* b) {
+        return last(a) != last(b) ? last(a) < last(b) : b->root < a->root;
+    });
+    for (const ResidentTile* t : free) {
+        if (set_.bytes() <= limit) break;
+        if (t->children == 0) set_.erase(t->root);
+    }
+}
+
+void ResidentTiles::count_memory() {
+    const std::size_t bytes = set_.bytes();
+    cache_.count_drawn_bytes(static_cast<std::ptrdiff_t>(bytes) - static_cast<std::ptrdiff_t>(counted_bytes_));
+    counted_bytes_ = bytes;
+}
+
+std::span<const LocationCode> ResidentTiles::settle(const SegmentView& view) {
+    std::vector<LocationCode> all;
+    for (;;) {
+        const auto changes = update(view);
+        all.insert(all.end(), changes.begin(), changes.end());
+        if (residency_.pending == 0) break;
+        // Many at once: every update walks the whole view.
+        loader_.wait(1 + residency_.pending / 2);
+    }
+    changes_ = std::move(all);
+    return changes_;
+}
+
+std::span<const LocationCode> ResidentTiles::place(const Placement& placement) {
+    loader_.request({});
+    while (loader_.on_their_way() > 0) {
+        loader_.wait();
+        take_in();
+    }
+    take_in();
+    placement_ = placement;
+    set_.place(placement);
+    set_.settle();
+    count_memory();
+    asked_ = false;
+    changes_ = set_.take_changes();
+    return changes_;
+}
+
+ResidentCounts ResidentTiles::counts() const {
+    return {.tiles = set_.size(),
+            .tile_bytes = set_.bytes(),
+            .tiles_loaded = loaded_,
+            .memory_limit_bytes = cache_.memory_limit_bytes(),
+            .memory_peak_bytes = cache_.memory_peak_bytes()};
+}
+
+}  // namespace planet

@@ -1,0 +1,32 @@
+#pragma once
+// A folder of output files that appears whole or not at all.
+
+#include <filesystem>
+#include <string>
+
+namespace render {
+
+/// Makes a temporary folder beside the target at once, so that an unwritable place is refused before any work is done;
+/// commit() renames it. Without commit() nothing is left behind.
+class OutputFolder {
+  public:
+    /// Throws planet::Error(bad_usage) naming `where` (the option) if the target is there, and not an empty folder, or if
+    /// it cannot be made.
+    OutputFolder(std::string where, std::filesystem::path target);
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+    ~OutputFolder();
+
+    /// Where the files go until commit().
+    const std::filesystem::path& path() const { return temporary_; }
+    /// Once. Throws as the constructor does.
+    void commit();
+
+  private:
+    [[noreturn]] void fail(const std::string& why) const;
+
+    std::string where_;
+    std::filesystem::path target_, temporary_;
+};
+
+}  // namespace render

@@ -1,0 +1,136 @@
+#include "render/app/tin_looks.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <fstream>
+#include <iterator>
+
+#include "planet/elevation/image_io.h"
+#include "planet/error.h"
+
+namespace render {
+namespace {
+
+namespace fs = std::filesystem;
+
+glm::vec3 unit(const glm::dvec3& v, const glm::vec3& otherwise) {
+    const double length = glm::length(v);
+    return length > 0 ? glm::vec3(v / length) : otherwise;
+}
+
+std::string bytes_of_file(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A name for a file that is written to be read at once, and then gone.
+class ScratchName {
+  public:
+    explicit ScratchName(const char* ending) {
+        static std::atomic<int> count{0};
+        path_ = fs::temp_directory_path() /
+                ("octaglobe-drape-" + std::to_string(::getpid()) + "-" + std::to_string(count++) + ending);
+    }
+    ScratchName(const ScratchName&) = delete;
+    ScratchName& operator=(const ScratchName&) = delete;
+    ~ScratchName() {
+        std::error_code ignored;
+        fs::remove(path_, ignored);
+    }
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+}  // namespace
+
+std::vector<glm::vec3> normals_of(const planet::SurfaceMesh& mesh) {
+    std::vector<glm::dvec3> sums(mesh.vertices.size(), glm::dvec3(0));
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const glm::dvec3 n = glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
+        for (const auto v : {a, b, c}) sums[v] += n;
+    }
+    std::vector<glm::vec3> normals;
+    normals.reserve(sums.size());
+    for (const glm::dvec3& sum : sums) normals.push_back(unit(sum, {0, 0, 1}));
+    return normals;
+}
+
+std::vector<glm::vec3> ground_normals(const planet::HeightGrid& grid, const planet::RasterFrame& frame,
+                                      const std::vector<glm::ivec2>& samples) {
+    constexpr glm::ivec2 ways[]{{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    std::vector<glm::dvec2> at;
+    std::vector<double> heights;
+    for (const glm::ivec2 p : samples)
+        for (const glm::ivec2 way : ways) {
+            glm::ivec2 q = p;
+            for (int i = 0; i < ground_reach && grid.inside(q + way) && grid.valid(q + way); ++i) q += way;
+            at.emplace_back(q);
+            heights.push_back(static_cast<double>(grid.at(q)));
+        }
+    std::vector<glm::dvec3> placed(at.size());
+    std::vector<glm::vec3> up(at.size());
+    frame.place(at, heights, placed, up);
+    std::vector<glm::vec3> normals;
+    for (std::size_t i = 0; i < placed.size(); i += 4) {
+        const glm::dvec3 n = glm::cross(placed[i] - placed[i + 1], placed[i + 2] - placed[i + 3]);
+        normals.push_back(unit(glm::dot(n, glm::dvec3(up[i])) < 0 ? -n : n, up[i]));
+    }
+    return normals;
+}
+
+DrapeMap::DrapeMap(const planet::RasterHeader& raster)
+    : size_(raster.width, raster.height),
+      columns_run_west_(raster.grid.per_column.x < 0),
+      rows_run_north_(raster.grid.per_row.y > 0) {}
+
+glm::dvec2 DrapeMap::at(glm::dvec2 sample) const {
+    const glm::dvec2 share = (sample + 0.5) / size_;
+    return {columns_run_west_ ? 1 - share.x : share.x, rows_run_north_ ? 1 - share.y : share.y};
+}
+
+Drape::Drape(fs::path path) : path_(std::move(path)), image_(planet::read_image(path_.string())) {
+    char start[4] = {};
+    std::ifstream(path_, std::ios::binary).read(start, sizeof start);
+    const std::string_view magic(start, sizeof start);
+    png_ = magic == "\x89PNG";
+    jpeg_ = magic.starts_with("\xff\xd8\xff");
+}
+
+std::string Drape::whole() const {
+    return png_ || jpeg_ ? bytes_of_file(path_) : encoded(image_);
+}
+
+Drape::Part Drape::part(glm::dvec2 low, glm::dvec2 high) const {
+    const glm::dvec2 size(image_.width, image_.height);
+    constexpr double beside = 2;  // pixels: what filters look at
+    const glm::ivec2 first(glm::max(glm::floor(low * size) - beside, glm::dvec2(0))),
+        end(glm::min(glm::ceil(high * size) + beside, size));
+    planet::Image cut{end.x - first.x, end.y - first.y, image_.channels, {}};
+    for (int y = first.y; y < end.y; ++y) {
+        const auto* row = image_.pixel(first.x, y);
+        cut.pixels.insert(cut.pixels.end(), row, row + cut.row_size());
+    }
+    return {encoded(cut), glm::dvec2(first) / size, glm::dvec2(end) / size};
+}
+
+std::string Drape::encoded(const planet::Image& image) const {
+    const ScratchName file(png_ || image.channels == 4 ? ".png" : ".jpg");
+    planet::write_image(file.path().string(), image);
+    return bytes_of_file(file.path());
+}
+
+std::vector<glm::vec2> texture_coordinates(const std::vector<glm::ivec2>& samples, glm::ivec2 first,
+                                           const DrapeMap& map, const Drape::Part& part) {
+    std::vector<glm::vec2> uv;
+    uv.reserve(samples.size());
+    for (const glm::ivec2 p : samples)
+        uv.emplace_back((map.at(glm::dvec2(p + first)) - part.low) / (part.high - part.low));
+    return uv;
+}
+
+}  // namespace render

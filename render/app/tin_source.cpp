@@ -1,0 +1,176 @@
+#include "render/app/tin_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "planet/elevation/elevation_sources.h"
+#include "planet/error.h"
+#include "planet/tin/mosaic_grid.h"
+#include "render/app/data_path.h"
+#include "render/app/mesh_keep.h"
+
+namespace render {
+namespace {
+
+using planet::Error;
+using planet::Fault;
+using planet::MeshFrame;
+
+/// 4 GB of heights.
+constexpr std::size_t most_samples = std::size_t{1} << 30;
+
+/// What GDAL keeps of a file's blocks, at least.
+constexpr std::size_t least_cache = std::size_t{32} << 20;
+
+planet::RasterOptions raster_options() {
+    planet::RasterOptions how;
+    how.plain = true;
+    return how;
+}
+
+std::unique_ptr<const planet::RasterMosaic> open_mosaic(const std::vector<std::string>& patterns) {
+    std::vector<planet::MosaicPart> parts;
+    std::size_t cache = least_cache;
+    for (const std::string& pattern : patterns)
+        for (const std::string& file : planet::files_of_pattern(pattern)) {
+            planet::MosaicPart part = planet::mosaic_part(file, raster_options());
+            if (!parts.empty() && !planet::place_on_grid_of(parts.front(), part))
+                throw Error(Fault::bad_data, file, "is not on the grid of " + parts.front().path,
+                            "rasters of one CRS and one sample distance, a whole number of samples apart");
+            cache = std::max(cache, part.decoded_bytes);
+            parts.push_back(std::move(part));
+        }
+    planet::raster_driver().limit_cache(cache);
+    std::string name = std::filesystem::path(parts.front().path).filename().string();
+    if (parts.size() > 1) name += " and " + std::to_string(parts.size() - 1) + " more";
+    return std::make_unique<const planet::RasterMosaic>(std::move(parts), name, raster_options());
+}
+
+std::shared_ptr<const planet::Raster> without_samples(const planet::RasterHeader& header) {
+    auto raster = std::make_shared<planet::Raster>();
+    static_cast<planet::RasterHeader&>(*raster) = header;
+    return raster;
+}
+
+bool is_nowhere(const glm::dvec3& p) {
+    return std::isnan(p.x + p.y);
+}
+
+}  // namespace
+
+TinSource::TinSource(const TinCommand& command)
+    : command_(command), mosaic_(open_mosaic(command.sources)), raster_(without_samples(mosaic_->header())) {
+    if (raster_->width < 2 || raster_->height < 2)
+        throw Error(Fault::bad_data, raster_->name,
+                    std::to_string(raster_->width) + "x" + std::to_string(raster_->height) + " samples have no area",
+                    "2x2 samples or more");
+    for (const std::string& file : command.masks) {
+        planet::Features found = planet::read_features(file, *raster_);
+        if (found.polygons.empty()) throw Error(Fault::bad_data, file, "has no polygon to keep", "polygons");
+        std::ranges::move(found.polygons, std::back_inserter(mask_));
+    }
+}
+
+planet::VerticalDatum TinSource::datum() const {
+    if (command_.datum) return *command_.datum;
+    const bool ellipsoid = raster_->vertical_crs.find("llipsoid") != std::string::npos;
+    return ellipsoid ? planet::VerticalDatum::ellipsoid : planet::VerticalDatum::egm96;
+}
+
+planet::HeightGrid TinSource::heights() const {
+    planet::HeightGrid grid = planet::heights_of(*mosaic_, most_samples);
+    if (!mask_.empty()) planet::keep_within(grid, *raster_, mask_);
+    return grid;
+}
+
+planet::HeightGrid TinSource::heights(glm::ivec2 first, glm::ivec2 last) const {
+    const glm::ivec2 size = last - first + 1;
+    planet::HeightGrid grid = planet::heights_of(*mosaic_, planet::SampleWindow{first.x, first.y, size.x, size.y});
+    if (!mask_.empty()) planet::keep_window_within(grid, first, *raster_, mask_);
+    return grid;
+}
+
+planet::RasterFrame TinSource::make_frame(MeshFrame frame) const {
+    const bool curved = frame == MeshFrame::enu || frame == MeshFrame::ecef;
+    std::shared_ptr<const planet::Geoid> geoid;
+    if (curved && !raster_->plain && datum() == planet::VerticalDatum::egm96)
+        geoid = std::make_shared<const planet::Geoid>(data_file("egm96-15.pgm"));
+    return {raster_, frame, datum(), geoid, command_.exaggeration};
+}
+
+planet::RasterFrame TinSource::frame(MeshFrame kind, planet::MeshFormat format) const {
+    planet::RasterFrame frame = make_frame(kind);
+    planet::check_frame(frame.reference(), format);
+    if (!frame.affine()) check_reach(frame);
+    return frame;
+}
+
+planet::RasterFrame TinSource::tangent_frame() const {
+    return make_frame(MeshFrame::enu);
+}
+
+void TinSource::check_reach(const planet::RasterFrame& frame) const {
+    std::vector<glm::dvec2> at;
+    for (const double row : {0, raster_->height - 1})
+        for (int column = 0; column < raster_->width; ++column) at.emplace_back(column, row);
+    for (const double column : {0, raster_->width - 1})
+        for (int row = 0; row < raster_->height; ++row) at.emplace_back(column, row);
+    const std::vector<double> heights(at.size());
+    std::vector<glm::dvec3> places(at.size());
+    frame.place(at, heights, places, {});
+    if (std::ranges::any_of(places, is_nowhere))
+        throw Error(Fault::bad_usage, "--frame", "does not reach all of " + raster_->name,
+                    "another frame, e.g. source");
+}
+
+planet::TinFeatures TinSource::features() const {
+    planet::TinFeatures all;
+    for (const std::string& file : command_.features) {
+        planet::TinFeatures found = planet::features_at_samples(planet::read_features(file, *raster_), *raster_);
+        if (found.empty())
+            throw Error(Fault::bad_data, file, "has nothing on the raster", "features within " + raster_->name);
+        std::ranges::move(found.points, std::back_inserter(all.points));
+        std::ranges::move(found.lines, std::back_inserter(all.lines));
+        all.outside += found.outside;
+    }
+    return all;
+}
+
+std::vector<glm::ivec2> TinSource::pole_samples() const {
+    return samples_at_poles(*raster_);
+}
+
+PlacedBox box_of_window(const planet::RasterFrame& frame, glm::ivec2 first, glm::ivec2 last, double lowest,
+                        double highest) {
+    constexpr int places = 16;  // along each side
+    std::vector<glm::dvec2> at;
+    std::vector<double> heights;
+    for (int i = 0; i <= places; ++i)
+        for (int j = 0; j <= places; ++j)
+            for (const double h : {lowest, highest}) {
+                at.push_back(glm::mix(glm::dvec2(first), glm::dvec2(last), glm::dvec2(i, j) / double{places}));
+                heights.push_back(h);
+            }
+    std::vector<glm::dvec3> placed(at.size());
+    frame.place(at, heights, placed, {});
+    PlacedBox box{placed.front(), placed.front()};
+    for (const glm::dvec3& p : placed) {
+        box.low = glm::min(box.low, p);
+        box.high = glm::max(box.high, p);
+    }
+    return box;
+}
+
+glm::dvec2 height_range(const planet::HeightGrid& grid) {
+    float lowest = std::numeric_limits<float>::infinity(), highest = -lowest;
+    for (int y = 0; y < grid.height(); ++y)
+        for (const float h : std::span(grid.row(y), static_cast<std::size_t>(grid.width()))) {
+            lowest = h < lowest ? h : lowest;  // false for NaN
+            highest = h > highest ? h : highest;
+        }
+    return {static_cast<double>(lowest), static_cast<double>(highest)};
+}
+
+}  // namespace render

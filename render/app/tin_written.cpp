@@ -1,0 +1,214 @@
+#include "render/app/tin_written.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "planet/error.h"
+#include "planet/patches/patch_mesh.h"
+#include "planet/tin/tin_solid.h"
+#include "render/app/tin_source.h"
+
+namespace render {
+namespace {
+
+using planet::Error;
+using planet::Fault;
+using planet::HeightGrid;
+using planet::RasterFrame;
+
+bool is_nowhere(const glm::dvec3& p) {
+    return std::isnan(p.x + p.y);
+}
+
+/// Where the floor of a solid lies below samples: flat where up is z, else so high above the ellipsoid.
+class Floor {
+  public:
+    Floor(const HeightGrid& grid, const RasterFrame& frame, double base) : frame_(frame) {
+        height_ = height_range(grid).x - base;
+        if (frame.reference().frame == planet::MeshFrame::ecef || !curves(frame)) return;
+        const HeightGrid z = planet::heights_above_tangent_plane(grid, frame);
+        level_ = height_range(z).x - base * frame.exaggeration();
+    }
+
+    void append_places(const std::vector<glm::ivec2>& below, std::vector<glm::dvec3>& places) const {
+        for (const glm::ivec2 sample : below) {
+            const glm::dvec2 at(sample);
+            glm::dvec3& place = places.emplace_back();
+            frame_.place({&at, 1}, {&height_, 1}, {&place, 1}, {});
+            if (level_) place.z = *level_;
+        }
+    }
+
+  private:
+    const RasterFrame& frame_;
+    double height_;
+    std::optional<double> level_{};
+};
+
+void close_below(WrittenTin& tin, const planet::TinSolid& solid, const Floor& floor, bool mirrored) {
+    planet::SurfaceMesh& surface = tin.surface;
+    floor.append_places(solid.floor, surface.vertices);
+    for (auto t : solid.below) {
+        if (mirrored) std::swap(t[1], t[2]);
+        surface.triangles.push_back(t);
+    }
+    surface.level.resize(surface.triangles.size(), 0);
+    surface.strip.clear();
+    planet::append_strips(surface.triangles, surface.strip);
+}
+
+class Certifier {
+  public:
+    Certifier(const HeightGrid& grid, const RasterFrame& frame, const TinGoal& goal)
+        : grid_(grid), frame_(frame), goal_(goal) {
+        if (goal.base) floor_.emplace(grid, frame, *goal.base);
+    }
+
+    /// All triangles are measured at first and in the end; between, those that mending has made.
+    WrittenTin run(planet::TinMesh mesh) {
+        WrittenTin tin;
+        tin.mesh = std::move(mesh);
+        place(tin);
+        for (;;) {
+            measure_all(tin);
+            Findings found = look(tin.mesh, tin.deviation);
+            tin.kept = found.too_far == 0;
+            tin.mendable = tin.kept || !found.samples.empty() || !found.border.empty();
+            tin.border_samples = std::move(found.border);
+            if (found.samples.empty()) return tin;
+            std::sort(found.within.begin(), found.within.end());
+            if (!mend(tin, std::move(found))) return tin;
+        }
+    }
+
+  private:
+    struct Findings {
+        std::size_t too_far = 0;            ///< triangles
+        std::vector<glm::ivec2> samples;    ///< the worst of each; corners cannot be inserted again
+        std::vector<glm::ivec2> border;     ///< those on a shared border
+        std::vector<std::uint64_t> within;  ///< keys of triangles within the tolerance
+    };
+
+    void measure_all(WrittenTin& tin) const {
+        tin.deviation =
+            planet::measure_written(tin.mesh, tin.surface.vertices, grid_, frame_, goal_.threads, goal_.by_sample);
+        tin.deviation_max = tin.deviation.max + grid_.sample_rounding();
+    }
+
+    Findings look(const planet::TinMesh& mesh, const planet::WrittenDeviation& deviation) const {
+        Findings found;
+        const double bound = goal_.tolerance + tin_measuring_slack_m - grid_.sample_rounding();
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            if (!(deviation.by_triangle[i] > bound)) {
+                if (std::isfinite(bound)) found.within.push_back(key(mesh, i));
+                continue;
+            }
+            ++found.too_far;
+            const glm::ivec2 worst = deviation.farthest[i];
+            if (std::ranges::any_of(mesh.triangles[i], [&](auto v) { return mesh.vertices[v] == worst; })) continue;
+            (goal_.border_is_shared && on_border(worst) ? found.border : found.samples).push_back(worst);
+        }
+        return found;
+    }
+
+    /// Of a triangle, by its corners. That two share one is as good as impossible, and would be noticed in the end.
+    static std::uint64_t key(const planet::TinMesh& mesh, std::size_t triangle) {
+        std::array<std::uint64_t, 3> corner{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::ivec2 p = mesh.vertices[mesh.triangles[triangle][k]];
+            corner[k] = std::uint64_t{static_cast<std::uint32_t>(p.y)} << 32 | static_cast<std::uint32_t>(p.x);
+        }
+        std::sort(corner.begin(), corner.end());
+        std::uint64_t key = 0;
+        for (const std::uint64_t c : corner) {  // as splitmix64 stirs
+            key = (key ^ c) * 0xbf58476d1ce4e5b9u;
+            key ^= key >> 29;
+        }
+        return key;
+    }
+
+    /// Inserts the worst samples until no triangle that this makes is too far.
+    /// @return false, and the last state is measured, if that takes more triangles than there may be
+    bool mend(WrittenTin& tin, Findings found) const {
+        while (!found.samples.empty()) {
+            planet::TinMesh mended = planet::with_samples(tin.mesh, grid_, found.samples, goal_.features);
+            if (mended.triangles.size() > goal_.max_triangles) {
+                measure_all(tin);
+                return false;
+            }
+            tin.inserted += found.samples.size();
+            tin.mesh = std::move(mended);
+            const double step = tin.rounding.step;
+            place(tin);
+            if (tin.rounding.step != step) found.within.clear();  // everything has moved
+            planet::TinMesh fresh{tin.mesh.vertices, {}, {}};
+            for (std::size_t i = 0; i < tin.mesh.triangles.size(); ++i)
+                if (!std::binary_search(found.within.begin(), found.within.end(), key(tin.mesh, i)))
+                    fresh.triangles.push_back(tin.mesh.triangles[i]);
+            Findings more =
+                look(fresh, planet::measure_written(fresh, tin.surface.vertices, grid_, frame_, goal_.threads));
+            const auto middle = static_cast<std::ptrdiff_t>(found.within.size());
+            found.within.insert(found.within.end(), more.within.begin(), more.within.end());
+            std::sort(found.within.begin() + middle, found.within.end());
+            std::inplace_merge(found.within.begin(), found.within.begin() + middle, found.within.end());
+            found.samples = std::move(more.samples);
+        }
+        return true;
+    }
+
+    void place(WrittenTin& tin) const {
+        if (tin.mesh.triangles.empty())
+            throw Error(Fault::bad_data, "the TIN", "no triangle has three valid corners",
+                        "three valid samples side by side");
+        std::optional<planet::TinSolid> solid;
+        if (floor_) {
+            solid = planet::solid_below(std::move(tin.mesh), {grid_.width() - 1, grid_.height() - 1});
+            tin.mesh = solid->top;
+        }
+        tin.surface = planet::surface_from_tin(tin.mesh, grid_, frame_);
+        if (solid) close_below(tin, *solid, *floor_, frame_.mirrored());
+        if (std::ranges::any_of(tin.surface.vertices, is_nowhere))
+            throw Error(Fault::bad_usage, "--frame", "does not reach all of the raster", "another frame, e.g. source");
+        tin.rounding = planet::round_to_format(tin.surface, frame_.reference(), goal_.format, goal_.least_step);
+    }
+
+    bool on_border(glm::ivec2 p) const {
+        return p.x == 0 || p.y == 0 || p.x == grid_.width() - 1 || p.y == grid_.height() - 1;
+    }
+
+    const HeightGrid& grid_;
+    const RasterFrame& frame_;
+    const TinGoal& goal_;
+    std::optional<Floor> floor_;
+};
+
+void compare(const std::string& path, planet::MeshFormat format, const planet::SurfaceMesh& measured) {
+    const planet::SurfaceMesh found = planet::read_mesh(path, format);
+    bool same = found.triangles.size() == measured.triangles.size();
+    for (std::size_t i = 0; same && i < found.triangles.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            same = same && found.vertices[found.triangles[i][k]] == measured.vertices[measured.triangles[i][k]];
+    if (!same) throw Error(Fault::check_failed, path, "does not hold what was measured");
+}
+
+}  // namespace
+
+WrittenTin as_written(planet::TinMesh mesh, const HeightGrid& grid, const RasterFrame& frame, const TinGoal& goal) {
+    return Certifier(grid, frame, goal).run(std::move(mesh));
+}
+
+std::size_t write_checked(OutputFile& file, const WrittenTin& tin, const planet::MeshReference& reference,
+                          planet::MeshFormat format, const planet::MeshLooks& looks) {
+    std::size_t bytes = 0;
+    planet::write_mesh(
+        [&](std::string_view block) {
+            bytes += block.size();
+            file.append(block);
+        },
+        tin.surface, reference, format, tin.rounding, looks);
+    if (!file.temporary().empty()) compare(file.temporary().string(), format, tin.surface);
+    return bytes;
+}
+
+}  // namespace render

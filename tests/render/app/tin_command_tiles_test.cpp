@@ -1,0 +1,192 @@
+// `octaglobe tin --tile`: what its files are put together, at every sample, and what of them is seen when it fails.
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <csignal>
+#include <ostream>
+
+#include "planet/elevation/raster_io.h"
+#include "planet/mesh/surface_check.h"
+#include "tests/render/app/slow_deviation.h"
+#include "tests/render/app/tin_program.h"
+
+namespace render {
+namespace {
+
+using planet::SurfaceMesh;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+class TinTiles : public TinCommandTest {
+  protected:
+    std::vector<SurfaceMesh> read_tiles(const std::string& folder) const {
+        std::vector<std::filesystem::path> paths;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / folder))
+            paths.push_back(entry.path());
+        std::sort(paths.begin(), paths.end());
+        std::vector<SurfaceMesh> tiles;
+        for (const auto& path : paths) tiles.push_back(planet::read_mesh(path.string()));
+        return tiles;
+    }
+};
+
+/// Four by four tiles of 20 samples.
+Terrain wide_terrain() {
+    Terrain terrain = hilly_terrain();
+    terrain.width = terrain.height = 81;
+    return terrain;
+}
+
+struct Written {
+    const char *format, *frame;
+    bool voids = false;
+};
+void PrintTo(const Written& written, std::ostream* out) {
+    *out << written.format << ' ' << written.frame << (written.voids ? " with voids" : "");
+}
+
+class TinTilesOf : public TinTiles, public testing::WithParamInterface<Written> {};
+
+TEST_P(TinTilesOf, FitBitForBit) {
+    const auto& [format, frame, voids] = GetParam();
+    Terrain terrain = wide_terrain();
+    if (voids)
+        terrain.height_m = [](int x, int y) {
+            const bool lake = x > 30 && x < 52 && y > 15 && y < 45, speck = x == 20 && y == 20, side = x > 58 && y < 22;
+            return lake || speck || side ? nan : hills(x, y);
+        };
+    terrain.write(folder_ / "dem.vrt");
+    const Json report = tin(std::string("dem.vrt --max-deviation 15 --datum ellipsoid --tile 20 -o out/ --frame ") +
+                            frame + " --format " + format + " --error-grid e.tif");
+    EXPECT_EQ(report.at("tiles"), 16) << "none is void as a whole";
+    const std::vector<SurfaceMesh> tiles = read_tiles("out");
+    ASSERT_EQ(tiles.size(), 16u);
+    std::size_t triangles = 0;
+    for (const SurfaceMesh& tile : tiles) triangles += tile.triangles.size();
+    EXPECT_EQ(triangles, report.at("triangles"));
+
+    SurfaceMesh whole = put_together(tiles);
+    std::size_t open = 0;
+    {
+        // What is open is the border of the raster and of its voids, as it is of one mesh of all.
+        const Json one = tin(std::string("dem.vrt --max-deviation 0 -o one.ply"));
+        open = open_sides(whole);
+        if (!voids) {
+            const planet::SurfaceCheck check = planet::check(whole, planet::MeshFrame::source);
+            EXPECT_EQ(check.wrong_sides, 0u);
+            EXPECT_EQ(check.degenerate, 0u);
+            EXPECT_EQ(check.euler(), 1) << "a disc";
+        }
+        EXPECT_EQ(report.at("samples"), one.at("samples"));
+        EXPECT_EQ(report.at("samples_uncovered"), one.at("samples_uncovered"));
+        EXPECT_EQ(report.at("samples_void"), one.at("samples_void"));
+    }
+    EXPECT_LT(open, voids ? 600u : 4u * 80u);
+    EXPECT_LE(number(report, "deviation_max_m"), 15 + 1e-6);
+    if (frame == std::string("source")) {
+        const SlowDeviation slow = slow_deviation_in_source(whole, terrain);
+        EXPECT_EQ(slow.uncovered, report.at("samples_uncovered"));
+        EXPECT_NEAR(slow.max, number(report, "deviation_max_m"), 1e-6);
+        EXPECT_NEAR(slow.rms, number(report, "deviation_rms_m"), 1e-6);
+    }
+    const planet::Raster errors = planet::read_raster((folder_ / "e.tif").string());
+    double max = 0;
+    std::size_t known = 0;
+    for (int y = 0; y < 81; ++y)
+        for (int x = 0; x < 81; ++x) {
+            max = std::fmax(max, errors.at(x, y));
+            known += !std::isnan(errors.at(x, y));
+        }
+    EXPECT_NEAR(max, number(report, "deviation_max_m"), 1e-3);
+    EXPECT_TRUE(voids || known == 81u * 81u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, TinTilesOf,
+                         testing::Values(Written{"ply", "source"}, Written{"ply", "source", true},
+                                         Written{"glb", "enu"}, Written{"glb", "enu", true}, Written{"stl", "enu"},
+                                         Written{"glb", "ecef"}, Written{"obj", "ecef", true}, Written{"glb", "utm"}));
+
+// Tiles of 900 km: the chords of borders sag, and what has to go in there goes into both tiles.
+TEST_F(TinTiles, CurvedBordersAreMendedOnBothSides) {
+    Terrain terrain = wide_terrain();
+    terrain.step_x = 0.4, terrain.step_y = -0.4, terrain.x = 0;
+    terrain.write(folder_ / "dem.vrt");
+    const Json report =
+        tin("dem.vrt --max-deviation 40 --datum ellipsoid --tile 20 -o out --format ply --frame ecef --quality fast");
+    EXPECT_GT(number(report, "tiles_remade"), 0) << "or this tests nothing";
+    EXPECT_LE(number(report, "deviation_max_m"), 40 + 1e-6);
+    const SurfaceMesh whole = put_together(read_tiles("out"));
+    const planet::SurfaceCheck check = planet::check(whole, planet::MeshFrame::ecef);
+    EXPECT_EQ(check.wrong_sides, 0u);
+    EXPECT_EQ(check.euler(), 1);
+    EXPECT_LT(open_sides(whole), 4u * 80u);
+}
+
+TEST_F(TinTiles, TheSameBytesWhateverIsDoneFirst) {
+    wide_terrain().write(folder_ / "dem.vrt");
+    tin("dem.vrt --max-deviation 15 --tile 20 -o a");
+    tin("dem.vrt --max-deviation 15 --tile 20 -o b");
+    EXPECT_EQ(content(folder_ / "a/row1_column2.glb"), content(folder_ / "b/row1_column2.glb"));
+    EXPECT_NE(content(folder_ / "a/row1_column2.glb"), "");
+}
+
+TEST_F(TinTiles, MaskedTilesAreLeftOut) {
+    wide_terrain().write(folder_ / "dem.vrt");
+    write_features(folder_ / "area.geojson",
+                   R"({"type":"Polygon","coordinates":[[[10.045,49.955],[10.355,49.955],[10.355,49.405],[10.045,49.405],
+                      [10.045,49.955]]]})");
+    const Json report = tin("dem.vrt --max-deviation 15 --tile 20 --mask area.geojson -o out --format ply");
+    EXPECT_EQ(report.at("tiles"), 6);
+    EXPECT_EQ(report.at("tiles_void"), 10);
+    EXPECT_EQ(report.at("samples"), 31 * 55);
+    const SurfaceMesh whole = put_together(read_tiles("out"));
+    EXPECT_EQ(planet::check(whole, planet::MeshFrame::source).euler(), 1);
+}
+
+TEST_F(TinTiles, DrapesAreCut) {
+    wide_terrain().write(folder_ / "dem.vrt");
+    std::ofstream(folder_ / "drape.png", std::ios::binary)
+        << planet::testing::png_bytes(162, 162, 8, [](int x, int y) { return static_cast<unsigned>(x + y) % 256; });
+    tin("dem.vrt --max-deviation 15 --tile 40 --drape drape.png -o out");
+    for (const char* name : {"out/row0_column0.glb", "out/row1_column1.glb"}) {
+        const std::string file = content(folder_ / name);
+        EXPECT_NE(file.find("image/png"), std::string::npos);
+        EXPECT_NE(file.find("\x89PNG"), std::string::npos);
+    }
+}
+
+// A limit of the size of files stands for a full disk.
+TEST_F(TinTiles, NothingOfThemIsLeftByAFullDisk) {
+    wide_terrain().write(folder_ / "dem.vrt");
+    const auto before = folder_.names();
+    for (const char* arguments :
+         {"tin dem.vrt --max-deviation 0.1 --tile 40 -o out --format ply", "tin dem.vrt --max-deviation 0.1 -o t.glb",
+          "tin dem.vrt --max-deviation 0.1 -o t.ply --error-grid e.tif --json r.json"}) {
+        const Outcome outcome = render::run(folder_.path(), words(arguments), [] {
+            const rlimit size{9000, 9000};
+            ::setrlimit(RLIMIT_FSIZE, &size);
+            std::signal(SIGXFSZ, SIG_IGN);
+        });
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+        EXPECT_NE(outcome.err.find("cannot be written"), std::string::npos) << outcome.err;
+        EXPECT_EQ(folder_.names(), before) << arguments;
+    }
+}
+
+TEST_F(TinTiles, AFolderThatIsThereStays) {
+    wide_terrain().write(folder_ / "dem.vrt");
+    std::filesystem::create_directory(folder_ / "full");
+    std::filesystem::create_directory(folder_ / "empty");
+    std::ofstream(folder_ / "full/precious") << "kept";
+    const Outcome outcome = render::run(folder_.path(), words("tin dem.vrt --max-deviation 15 --tile 20 -o full"));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("is there, and not empty"), std::string::npos) << outcome.err;
+    EXPECT_EQ(content(folder_ / "full/precious"), "kept");
+    tin("dem.vrt --max-deviation 15 --tile 40 -o empty");
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "empty/row1_column1.glb"));
+}
+
+}  // namespace
+}  // namespace render
