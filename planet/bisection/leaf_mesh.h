@@ -109,8 +109,10 @@ class LeafMesh {
         const Leaf& leaf = leaves_[t];
         if (leaf.beyond[0] != none) prefetch_leaf(leaf.beyond[0]);
         if (leaf.beyond[1] != none) prefetch_leaf(leaf.beyond[1]);
-        __builtin_prefetch(&flat_[leaf.corner[0]]);
-        __builtin_prefetch(&flat_[leaf.corner[1]]);
+        for (const Index v : {leaf.corner[0], leaf.corner[1]}) {
+            __builtin_prefetch(&flat_[v].x);
+            __builtin_prefetch(&flat_[v].z);
+        }
     }
     void prefetch_beyond(Index t) const {
         const Index n = leaves_[t].beyond[0];
