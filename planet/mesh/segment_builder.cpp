@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "planet/mesh/lanes.h"
+#include "planet/lanes.h"
 #include "planet/mesh/morph.h"
 
 namespace planet {
