@@ -88,10 +88,12 @@ void add_shape(CLI::App& command, TinCommand& o) {
               [&](Where where, const std::string& text) {
                   o.exaggeration = parse_number(where, text, {0.01, 100});
               });
-    add_value(command, "--base", "METRES", "A solid, for printing: walls, and a floor so far below the lowest sample",
-              [&](Where where, const std::string& text) {
-                  o.base = parse_distance(where, text, {1e-3, largest_base_m});
-              });
+    add_value(
+        command, "--base", "METRES",
+        "A solid, for printing: walls, and a floor so far below the lowest sample,\nbesides the triangles of a budget",
+        [&](Where where, const std::string& text) {
+            o.base = parse_distance(where, text, {1e-3, largest_base_m});
+        });
 }
 
 void add_where_to(CLI::App& command, TinCommand& o) {

@@ -1,5 +1,7 @@
 // octaglobe tin DEM: one mesh.
 
+#include <malloc.h>
+
 #include <iostream>
 
 #include "planet/elevation/raster_writer.h"
@@ -46,6 +48,7 @@ class TinMaker {
         tin.deviation.by_triangle = {};
         tin.deviation.farthest = {};
         draw_steps();
+        ::malloc_trim(0);
         write(tin);
         tell(tin);
     }
@@ -82,15 +85,17 @@ class TinMaker {
     planet::TinResult make() {
         progress_.update("triangulating", std::nan(""));
         if (!curves(frame_)) return make_over(heights_, 1);
+        const planet::RasterFrame tangent = source_.tangent_frame();
         std::optional<HeightGrid> over_plane;
         {
             const auto step = report_.step("place");
-            over_plane.emplace(planet::heights_above_tangent_plane(heights_, source_.tangent_frame()));
+            over_plane.emplace(planet::heights_above_tangent_plane(heights_, tangent));
         }
-        return make_over(*over_plane, command_.exaggeration);
+        const double share = share_above_plane(tangent, {heights_.width(), heights_.height()});
+        return make_over(*over_plane, share * command_.exaggeration);
     }
 
-    /// @param scale of the grid's heights
+    /// @param scale of the tolerance
     planet::TinResult make_over(const HeightGrid& grid, double scale) {
         planet::TinOptions how;
         const double bound = command_.max_deviation.value_or(0);
@@ -120,6 +125,7 @@ class TinMaker {
 
     WrittenTin certified(planet::TinResult made) {
         const auto step = report_.step("certify");
+        ::malloc_trim(0);  // what many threads have made tiles in
         progress_.update("measuring", std::nan(""));
         features_found_ = made.features;
         end_ = made.end;
