@@ -94,7 +94,7 @@ bool ViewerSession::load() {
         for (const InputEvent& event : window_.wait(0.05))
             if (action_of(event) == Action::leave) return false;
         const GlobeLoading::Progress progress = loading_->progress();
-        panels_.progress = progress.step;
+        panels_.progress = "Loading: " + progress.step;
         panels_.progress_part = std::isnan(progress.part) ? 0 : static_cast<float>(progress.part);
         gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
         gl().Viewport(0, 0, window_.width(), window_.height());
