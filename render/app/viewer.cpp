@@ -152,7 +152,7 @@ double ViewerSession::patience() const {
 bool ViewerSession::step() {
     const std::vector<InputEvent> events = window_.wait(patience());
     input_ = false;
-    const double now = window_.seconds(), dt = std::min(now - last_step_, 0.1);
+    const double now = window_.seconds(), dt = now - last_step_;
     last_step_ = now;
     if (window_.closed() || leaving_) return false;
     if (window_.width() == 0 || window_.height() == 0) {  // an icon
