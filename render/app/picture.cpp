@@ -8,6 +8,7 @@
 
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/sun.h"
+#include "planet/mesh/pick.h"
 #include "render/app/band_writer.h"
 #include "render/app/data_path.h"
 #include "render/app/drawn_surface.h"
@@ -160,6 +161,18 @@ class Painter {
         report_.backend = backend_name(context_.backend());
         report_.gl_version = context_.gl_version();
         report_.gl_renderer = context_.gl_renderer();
+        pick_centre();
+    }
+
+    void pick_centre() {
+        const glm::dvec3 forward = -glm::dvec3(glm::transpose(camera_.view_from_ecef)[2]);
+        const planet::SplitTest& test = meshes_[(parts_.size() - 1) & 1].view.test;  // the same for all parts
+        const auto picked = planet::pick(mesher_.tiles(), test, camera_.eye, forward);
+        if (!picked) return;
+        const glm::dvec3 normal = planet::normal_from_ecef(wgs84, picked->position);
+        planet::SurfaceCursor cursor = surface_.field.cursor();
+        report_.centre = {planet::geodetic_from_normal(normal), planet::ground_at(cursor, normal), picked->distance,
+                          picked->deviation};
     }
 
     /// What a frame costs once the last part is drawn: the same view again, and the eye a hundredth of its height ahead.
