@@ -40,10 +40,6 @@ const std::vector<std::uint16_t>& side_cells_of(Side side) {
 
 }  // namespace
 
-SideSteps FrontierTile::steps(std::size_t k) const {
-    return {std::max(mine[k].deviation, theirs[k].deviation), std::max(mine[k].radius, theirs[k].radius)};
-}
-
 std::vector<LocationCode> tiles_around(LocationCode root) {
     std::vector<LocationCode> met;
     met.reserve(16);
@@ -97,18 +93,19 @@ void Frontier::meet_beside(FrontierTile& tile) {
         other.beside[index(seen_from_across(side))] = &tile;
         --other.unmeasured_beside;
         tell(tile, side, other);
-        tell(other, seen_from_across(side), tile);
+        if (!other.busy) tell(other, seen_from_across(side), tile);  // else it will once it is taken back
         advance(other);
     }
 }
 
+// What a busy tile arrives at is being written.
 void Frontier::tell(const FrontierTile& from, Side side, FrontierTile& to) {
     const auto& across = side_cells_across();
     for (const std::size_t k : side_cells_of(side)) {
         if (k >= from.mine.size()) break;
         const std::size_t j = across[k];
         if (j >= to.theirs.size()) continue;
-        const SideSteps said = from.mine[k], known = to.steps(j);
+        const SideSteps said = from.mine[k], known = to.busy ? to.theirs[j] : to.steps(j);
         to.told = to.told || said.deviation > known.deviation || said.radius > known.radius;
         to.theirs[j].deviation = std::max(to.theirs[j].deviation, said.deviation);
         to.theirs[j].radius = std::max(to.theirs[j].radius, said.radius);

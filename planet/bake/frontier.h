@@ -13,6 +13,7 @@
 // Positions and records of a tile in the frontier (43 KiB) are kept while there is memory, and measured again from its
 // heights when they are needed after all.
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -70,7 +71,9 @@ struct FrontierTile {
     bool is_kept = false;
 
     /// Settled steps of side cell k.
-    SideSteps steps(std::size_t k) const;
+    SideSteps steps(std::size_t k) const {
+        return {std::max(mine[k].deviation, theirs[k].deviation), std::max(mine[k].radius, theirs[k].radius)};
+    }
 };
 
 /// The other tiles that may hold a diamond on which one of this tile's depends, or one which depends on one of this

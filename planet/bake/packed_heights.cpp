@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "planet/mesh/lanes.h"
+#include "planet/lanes.h"
 
 namespace planet {
 

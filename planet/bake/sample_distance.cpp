@@ -8,7 +8,8 @@
 #include <cstring>
 #include <limits>
 
-#include "planet/mesh/lanes.h"
+#include "planet/lanes.h"
+#include "planet/store/tile_sides.h"
 
 namespace planet {
 
@@ -61,8 +62,8 @@ struct SampleDistance::Piece {
     std::array<double, most> from_side;      // of the nearest cell
     std::array<std::int32_t, most> quarter;  // index into square_cells()
     std::array<std::uint16_t, most> near;    // those that are not elsewhere
-    std::array<double, most>
-        off;  // of these,           // at a guess, metres; infinity: not certain; less than 0: elsewhere
+    std::array<double, most> off;  // of these, at a guess, metres; infinity: not certain; less than 0: elsewhere
+    std::array<std::uint16_t, most> cell;  // of these, the finest; 0: not certain or another tile's
 };
 
 void SampleDistance::start(const Placement& placement, const Tile& tile, const TileLattice& lattice,
@@ -214,42 +215,60 @@ void SampleDistance::add(std::span<const glm::dvec3> normals, std::span<const fl
         for (std::size_t k = 0; k < near; ++k) {
             const std::size_t s = piece.near[k];
             const bool certain = piece.inside[s] > 2 * bend_ && piece.from_side[s] > bend_;
-            const unsigned position = square_cells[static_cast<std::size_t>(piece.quarter[s])];
-            const double off = certain ? estimate(position, piece.u[s], piece.v[s], h[s]) : infinity;
+            const unsigned cell = certain ? finest_at(square_cells[static_cast<std::size_t>(piece.quarter[s])]) : 0;
+            const double off = cell != 0 ? estimate(cell, piece.u[s], piece.v[s], h[s])
+                               : certain ? -infinity
+                                         : infinity;
+            piece.cell[k] = static_cast<std::uint16_t>(cell);
             piece.off[k] = off;
             const bool leads = off > most && off < infinity;
             most = leads ? off : most;
-            farthest = leads ? s : farthest;
+            farthest = leads ? k : farthest;
         }
-        if (most > 0 && most + slack_ >= largest_) add_exactly(n[farthest], h[farthest]);
+        const auto add_exactly = [&](std::size_t k) {
+            const std::size_t s = piece.near[k];
+            if (piece.cell[k] != 0)
+                add_in(piece.cell[k], n[s], h[s]);
+            else
+                add_anywhere(n[s], h[s]);
+            piece.off[k] = -infinity;
+        };
+        if (most > 0 && most + slack_ >= largest_) add_exactly(farthest);
         for (std::size_t k = 0; k < near; ++k)
-            if (piece.off[k] + slack_ >= largest_ && piece.off[k] >= 0) add_exactly(n[piece.near[k]], h[piece.near[k]]);
+            if (piece.off[k] + slack_ >= largest_ && piece.off[k] >= 0) add_exactly(k);
     }
 }
 
-// @param position of the cell at relative level 12. Less than 0 where it is another tile's.
-double SampleDistance::estimate(unsigned position, double u, double v, float height) const {
-    const unsigned local = simple_ ? (tile_cells + position) >> (tile_levels - tile_->depth) : finest_[position];
-    if (local == 0) return -infinity;
+// @param position of a cell at relative level 12. @returns the local index of the one with the surface, 0: another tile's
+unsigned SampleDistance::finest_at(unsigned position) const {
+    return simple_ ? (tile_cells + position) >> (tile_levels - tile_->depth) : finest_[position];
+}
+
+double SampleDistance::estimate(unsigned local, double u, double v, float height) const {
     const TileLayout& layout = tile_layout();
     const auto& [left, right, apex] = layout.corners[local];
     const auto at = [&](std::uint16_t vertex) {
         return glm::dvec2(layout.lattice[vertex][0], layout.lattice[vertex][1]);
     };
     const glm::dvec2 a = at(apex), l = at(left) - a, r = at(right) - a, p = glm::dvec2(u, v) - a;
-    const double by_left = glm::dot(p, l) / glm::dot(l, l), by_right = glm::dot(p, r) / glm::dot(r, r);
+    const double square = (1u << relative_level(local)) * (1.0 / (steps * steps));  // 1 by that of a leg
+    const double by_left = glm::dot(p, l) * square, by_right = glm::dot(p, r) * square;
     const auto h = [&](std::uint16_t vertex) { return static_cast<double>(tile_->height[vertex]); };
     const double there = h(apex) + by_left * (h(left) - h(apex)) + by_right * (h(right) - h(apex));
     return std::abs(static_cast<double>(height) - there);
 }
 
-void SampleDistance::add_exactly(const glm::dvec3& n, float height) {
+void SampleDistance::add_in(unsigned local, const glm::dvec3& n, float height) {
+    ++exact_;
+    largest_ = std::max(largest_, std::abs(static_cast<double>(height) - surface(local, n)));
+}
+
+void SampleDistance::add_anywhere(const glm::dvec3& n, float height) {
     for (const glm::dvec3* side : {&by_apex_, &by_left_, &by_right_})
         if (glm::dot(*side, n) < -on_side) return;
     const unsigned local = finest_cell(n);
     if (local >> tile_->depth != 0 && !covered_.empty() && covered_[local - (1u << tile_->depth)]) return;
-    ++exact_;
-    largest_ = std::max(largest_, std::abs(static_cast<double>(height) - surface(local, n)));
+    add_in(local, n, height);
 }
 
 unsigned SampleDistance::finest_cell(const glm::dvec3& n) const {

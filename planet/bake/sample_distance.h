@@ -4,8 +4,8 @@
 // Only the largest distance is wanted, so most samples need no exact one. With (u, v) the sample's place on the tile's
 // lattice (tile_layout.h), found by central projection from the root's corners, its cell is a look-up, and the height
 // of the surface there is nearly linear between the heights of the cell's corners. A sample that so lies nearer than the
-// largest distance found by more than `slack` cannot exceed it. The others, and those so near to a side of a cell that
-// the look-up may be wrong, are located by descent from the root and measured exactly, as SurfaceCursor does.
+// largest distance found by more than `slack` cannot exceed it. The others are measured exactly, as SurfaceCursor does;
+// those so near to a side of a cell that the look-up may be wrong are located by descent from the root for that.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -45,8 +45,10 @@ class SampleDistance {
     /// @param Number a double, or as many as fit a register; sum < 0 on the other side of the planet
     template <class Number>
     void place(const Number& x, const Number& y, const Number& z, Number& u, Number& v, Number& sum) const;
-    double estimate(unsigned position, double u, double v, float height) const;
-    void add_exactly(const glm::dvec3& n, float height);
+    unsigned finest_at(unsigned position) const;
+    double estimate(unsigned local, double u, double v, float height) const;
+    void add_in(unsigned local, const glm::dvec3& n, float height);
+    void add_anywhere(const glm::dvec3& n, float height);
     unsigned finest_cell(const glm::dvec3& n) const;
     double surface(unsigned local, const glm::dvec3& n) const;
 

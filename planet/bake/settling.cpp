@@ -142,7 +142,8 @@ void TileRecords::rise(std::span<const SideSteps> theirs, std::span<SideSteps> m
         const SideSteps settled = larger(mine[k], theirs[k]);
         set(v, deviation_from_code(settled.deviation), radius_from_code(settled.radius));
     };
-    for (std::size_t k = 0; k < theirs.size(); ++k) set_side(layout.side_vertex[k], k);
+    for (std::size_t k = 0; k < theirs.size(); ++k)
+        if (!(larger(mine[k], theirs[k]) == mine[k])) set_side(layout.side_vertex[k], k);
     risen.drain([&](std::size_t v) {
         for (const std::size_t p : layout.parents[v]) {
             if (p == 0) continue;

@@ -100,6 +100,7 @@ std::unique_ptr<FrontierTile> TileMaker::measure(LocationCode root, InnerTile* a
     });
     tile->height = PackedHeights(tile_.height, scene_.scale.quantum_m);
     const std::size_t own = std::max<std::size_t>(3, own_undulations(root, tile_.depth));
+    if (scene_.scale.has_undulation) tile->undulation.reserve(own);
     for (std::size_t v = 0; scene_.scale.has_undulation && v < own; ++v)
         tile->undulation.push_back(static_cast<float>(tile_.undulation[v].m));
     tile->split_position = records->position[3];

@@ -5,20 +5,35 @@
 #include <cmath>
 #include <numeric>
 
+#include "planet/lanes.h"
+
 namespace planet {
 namespace {
 
 constexpr int leaf_points = 8;
 constexpr double closest = 1e-12;  // chord: 6 micrometres on Earth
 
+using Mask = WholeLanes;  // -1 in the lanes that are meant
+
 // At least 0, and monotonic in r.
-double weight(double r, double reach) {
-    if (r >= reach) return 0;
-    const double w = (reach - r) / (reach * std::max(r, closest));
-    return w * w;
+Lanes weight(const Lanes& r, double reach) {
+    const Lanes w = (reach - r) / (reach * larger(r, Lanes{} + closest));
+    return r >= reach ? Lanes{} : w * w;
 }
 
 }  // namespace
+
+struct BorderBlend::Places {
+    Lanes x, y, z;
+    Lanes least = Lanes{} + 1;  // of distance / reach
+    Mask within{};              // reach of a point
+    Lanes weights{}, total{};
+
+    Lanes from(const glm::dvec3& q) const {
+        const Lanes dx = q.x - x, dy = q.y - y, dz = q.z - z;
+        return square_root(dx * dx + dy * dy + dz * dz);
+    }
+};
 
 BorderBlend::BorderBlend(std::vector<Point> points, double clearance)
     : points_(std::move(points)), clearance_(clearance) {
@@ -58,41 +73,46 @@ void BorderBlend::build(int first, int count) {
     build(first + half, count - half);
 }
 
-void BorderBlend::find_nearest(std::size_t index, const glm::dvec3& p, double& least) const {
+void BorderBlend::find_nearest(std::size_t index, Places& p) const {
     const Node& node = nodes_[index];
-    if (glm::distance(p, node.centre) - node.radius - clearance_ >= least * node.max_reach) return;
+    if (!any(p.from(node.centre) - node.radius - clearance_ < p.least * node.max_reach)) return;
     if (node.right == 0) {
         for (int i = node.first; i < node.first + node.count; ++i) {
             const Point& q = points_[static_cast<std::size_t>(i)];
-            least = std::min(least, std::max(0.0, glm::distance(p, q.normal) - clearance_) / q.reach);
+            p.least = smaller(larger(p.from(q.normal) - clearance_, Lanes{}) / q.reach, p.least);
         }
         return;
     }
     std::size_t near = index + 1, far = static_cast<std::size_t>(node.right);
-    if (glm::distance(p, nodes_[far].centre) < glm::distance(p, nodes_[near].centre)) std::swap(near, far);
-    find_nearest(near, p, least);
-    find_nearest(far, p, least);
+    if (p.from(nodes_[far].centre)[0] < p.from(nodes_[near].centre)[0]) std::swap(near, far);
+    find_nearest(near, p);
+    find_nearest(far, p);
 }
 
-void BorderBlend::gather(std::size_t index, const glm::dvec3& p, double& weights, double& total) const {
+// Each lane takes part in what it would visit alone, in that order.
+void BorderBlend::gather(std::size_t index, Places& p) const {
     const Node& node = nodes_[index];
-    const double r = glm::distance(p, node.centre);
-    if (r - node.radius >= node.max_reach + clearance_) return;
-    if (node.radius < 0.125 * r) {
-        const double w = node.weight * weight(r, node.reach + clearance_);
-        weights += w;
-        total += w * node.difference;
-    } else if (node.right == 0) {
+    const Mask outer = p.within;
+    const Lanes r = p.from(node.centre);
+    const Mask visits = outer & ~(r - node.radius >= node.max_reach + clearance_);
+    if (!any(visits)) return;
+    const auto take = [&p](const Mask& who, const Lanes& w, double difference) {
+        p.weights += who ? w : Lanes{};
+        p.total += who ? w * difference : Lanes{};
+    };
+    const Mask as_one = visits & (node.radius < 0.125 * r);
+    if (any(as_one)) take(as_one, node.weight * weight(r, node.reach + clearance_), node.difference);
+    p.within = visits & ~as_one;
+    if (any(p.within) && node.right == 0) {
         for (int i = node.first; i < node.first + node.count; ++i) {
             const Point& q = points_[static_cast<std::size_t>(i)];
-            const double w = q.count * weight(glm::distance(p, q.normal), q.reach + clearance_);
-            weights += w;
-            total += w * q.difference;
+            take(p.within, q.count * weight(p.from(q.normal), q.reach + clearance_), q.difference);
         }
-    } else {
-        gather(index + 1, p, weights, total);
-        gather(static_cast<std::size_t>(node.right), p, weights, total);
+    } else if (any(p.within)) {
+        gather(index + 1, p);
+        gather(static_cast<std::size_t>(node.right), p);
     }
+    p.within = outer;
 }
 
 // Whether a point of the node may be within its reach of any place in a ball.
@@ -118,20 +138,32 @@ void BorderBlend::add(std::span<const glm::dvec3> normals, std::span<double> cor
         for (const glm::dvec3& n : some) square = std::max(square, glm::dot(n - centre, n - centre));
         const bool is_number = centre.x + centre.y + centre.z == centre.x + centre.y + centre.z;
         if (is_number && !may_reach(0, centre, std::sqrt(square) * (1 + 1e-9))) continue;
-        for (std::size_t i = 0; i < some.size(); ++i) corrections[first + i] += (*this)(some[i]);
+        for (std::size_t i = 0; i < some.size(); i += lane_count) {
+            const std::size_t n = std::min(lane_count, some.size() - i);
+            add_some(some.subspan(i, n), corrections.subspan(first + i, n));
+        }
     }
 }
 
-double BorderBlend::operator()(const glm::dvec3& p) const {
-    if (nodes_.empty() || std::isnan(p.x + p.y + p.z)) return 0;
-    double least = 1;  // of distance / reach
-    find_nearest(0, p, least);
-    if (least >= 1) return 0;
-    double weights = 0, total = 0;
-    gather(0, p, weights, total);
-    if (!(weights > 0)) return 0;
-    const double s = 1 - least;
-    return s * s * (3 - 2 * s) * total / weights;
+// A NaN is within no reach.
+void BorderBlend::add_some(std::span<const glm::dvec3> normals, std::span<double> corrections) const {
+    const auto axis = [&](int k) {
+        return gather_lanes([&](std::size_t w) { return normals[std::min(w, normals.size() - 1)][k]; });
+    };
+    Places p{.x = axis(0), .y = axis(1), .z = axis(2)};
+    find_nearest(0, p);
+    p.within = p.least < 1;
+    if (!any(p.within)) return;
+    gather(0, p);
+    const Lanes s = 1 - p.least;
+    const Lanes correction = p.weights > 0 ? s * s * (3 - 2 * s) * p.total / p.weights : Lanes{};
+    for (std::size_t w = 0; w < normals.size(); ++w) corrections[w] += correction[w];
+}
+
+double BorderBlend::operator()(const glm::dvec3& normal) const {
+    double correction = 0;
+    add({&normal, 1}, {&correction, 1});
+    return correction;
 }
 
 }  // namespace planet

@@ -29,8 +29,8 @@ class BorderBlend {
 
     /// Metres to add to the coarser field at a unit normal. 0 beyond the reach of every point.
     double operator()(const glm::dvec3& normal) const;
-    /// Adds to each correction, in metres, that at a unit normal; fast where neighbours in the span are so on the ground
-    /// and out of reach. Spans of the same size.
+    /// Adds to each correction, in metres, that at a unit normal: the same bits, and much faster where neighbours in the
+    /// span are so on the ground. Spans of the same size.
     void add(std::span<const glm::dvec3> normals, std::span<double> corrections) const;
 
     std::size_t bytes() const { return sizeof *this + points_.size() * sizeof(Point) + nodes_.size() * sizeof(Node); }
@@ -45,10 +45,13 @@ class BorderBlend {
         int right = 0;                     // second child; the first follows its parent. 0: a leaf
     };
 
+    struct Places;  // some, one a lane
+
     void build(int first, int count);
     bool may_reach(std::size_t node, const glm::dvec3& centre, double radius) const;
-    void find_nearest(std::size_t node, const glm::dvec3& p, double& least) const;
-    void gather(std::size_t node, const glm::dvec3& p, double& weights, double& total) const;
+    void add_some(std::span<const glm::dvec3> normals, std::span<double> corrections) const;
+    void find_nearest(std::size_t node, Places& places) const;
+    void gather(std::size_t node, Places& places) const;
 
     std::vector<Point> points_;
     std::vector<Node> nodes_;

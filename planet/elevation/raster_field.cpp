@@ -117,11 +117,11 @@ void RasterField::sample_rows(const SampleArea& area, const SampleRowVisitor& vi
     const int size = survey_.block_size;
     const std::size_t most = 256 + static_cast<std::size_t>(size);
     SampleCursor cursor(*samples_);
-    std::vector<glm::dvec3> normals(most);
-    std::vector<float> heights(most);
+    const auto normals = std::make_unique_for_overwrite<glm::dvec3[]>(most);
+    const auto heights = std::make_unique_for_overwrite<float[]>(most);
     std::size_t held = 0;
     const auto give = [&] {
-        if (held > 0) visit({normals.data(), held}, {heights.data(), held});
+        if (held > 0) visit({normals.get(), held}, {heights.get(), held});
         held = 0;
     };
     blocks_.visit(area.cap, [&](int i, int j, double) {
@@ -133,8 +133,8 @@ void RasterField::sample_rows(const SampleArea& area, const SampleRowVisitor& vi
             const auto n = static_cast<std::size_t>(last - first);
             if (n == 0) continue;
             if (held + n > most) give();
-            map_.normals_of_row(i * size + first, row, {normals.data() + held, n});
-            heights_of_row(cursor, i * size + first, row, {heights.data() + held, n});
+            map_.normals_of_row(i * size + first, row, {normals.get() + held, n});
+            heights_of_row(cursor, i * size + first, row, {heights.get() + held, n});
             held += n;
         }
         return std::numeric_limits<double>::infinity();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "planet/mesh/lanes.h"
+#include "planet/mesh/lane_plane.h"
 
 namespace planet {
 
@@ -24,8 +24,10 @@ void TileLattice::set_normals(const Corners& root, int depth) {
     size_ = layout.vertex_count[static_cast<std::size_t>(depth)];
     const std::size_t padded = (size_ + padding - 1) / padding * padding;
     for (int axis = 0; axis < 3; ++axis) {
-        n_[axis].assign(padded, nan);
-        p_[axis].assign(padded, nan);
+        for (std::vector<double>* of : {&n_[axis], &p_[axis]}) {
+            of->resize(padded);
+            std::fill(of->begin() + static_cast<std::ptrdiff_t>(size_), of->end(), nan);
+        }
         n_[axis][0] = root.left[axis];
         n_[axis][1] = root.right[axis];
         n_[axis][2] = root.apex[axis];

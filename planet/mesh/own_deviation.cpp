@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "planet/mesh/deviation.h"
-#include "planet/mesh/lanes.h"
+#include "planet/mesh/lane_plane.h"
 
 namespace planet {
 

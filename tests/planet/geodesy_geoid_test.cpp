@@ -112,6 +112,24 @@ TEST(Geoid, NormalsAndBatchesGiveTheSameAsAngles) {
     }
 }
 
+// The cubics of two cells differ along the side between them: a place there must not change cells with the way its angles
+// are found.
+TEST(Geoid, OnSidesOfCellsNormalsTakeTheAnglesOfTheStandardLibrary) {
+    const Folder folder;
+    const Geoid geoid(folder.write("rough.pgm", pgm(24, 13, rough)));
+    std::vector<glm::dvec3> normals;
+    for (int lat = -75; lat <= 75; lat += 15)
+        for (int lon = -180; lon < 180; lon += 5) normals.push_back(normal_from_geodetic(lat * degrees, lon * degrees));
+    for (int i = 0; i < 24; ++i) normals.push_back(glm::normalize(glm::dvec3(1, i, i % 3)));
+    std::vector<GeoidUndulation> batch(normals.size());
+    geoid.undulations(normals, batch);
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const glm::dvec3& n = normals[i];
+        const double latitude = std::atan2(n.z, std::sqrt(n.x * n.x + n.y * n.y)), longitude = std::atan2(n.y, n.x);
+        EXPECT_NEAR(batch[i].m, geoid.undulation(latitude, longitude).m, i < 11 * 72 ? 0 : 1e-9) << i;
+    }
+}
+
 TEST(Geoid, ThreadsReadOneGridAndGetTheSameBits) {
     const Folder folder;
     const Geoid geoid(folder.write("rough.pgm", pgm(24, 13, rough)));

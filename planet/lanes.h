@@ -1,5 +1,5 @@
 #pragma once
-// As many doubles at a time as a register holds, for the loops over a tile's vertices and cells. Elementwise, so the
+// As many doubles at a time as a register holds, for loops that take most of the time. Elementwise, so the
 // same bits for any width. For .cpp files: these types are no part of an interface.
 
 #include <algorithm>
@@ -46,6 +46,15 @@ inline Lanes square_root(Lanes v) {
     return v;
 }
 
+/// Whether a comparison holds in any lane.
+inline bool any(WholeLanes mask) {
+    typedef std::int64_t Pair __attribute__((vector_size(2 * sizeof(std::int64_t))));
+    Pair pairs[lane_count / 2];
+    std::memcpy(pairs, &mask, sizeof mask);
+    for (std::size_t k = 1; k < lane_count / 2; ++k) pairs[0] |= pairs[k];
+    return (pairs[0][0] | pairs[0][1]) != 0;
+}
+
 inline Lanes load_lanes(const double* from) {
     Lanes v;
     std::memcpy(&v, from, sizeof v);
@@ -54,6 +63,25 @@ inline Lanes load_lanes(const double* from) {
 
 inline void store_lanes(const Lanes& v, double* to) {
     std::memcpy(to, &v, sizeof v);
+}
+
+inline Lanes widened_lanes(const float* from) {
+    NarrowLanes v;
+    std::memcpy(&v, from, sizeof v);
+    return __builtin_convertvector(v, Lanes);
+}
+
+/// 0, 1, 2, ...
+inline WholeLanes lane_numbers() {
+    WholeLanes v;
+    for (std::size_t w = 0; w < lane_count; ++w) v[w] = static_cast<std::int64_t>(w);
+    return v;
+}
+
+inline double least_lane(Lanes v) {
+    double least = v[0];
+    for (std::size_t w = 1; w < lane_count; ++w) least = v[w] < least ? v[w] : least;
+    return least;
 }
 
 /// Lane w is at(w).
@@ -94,17 +122,5 @@ inline std::pair<float, float> least_and_most(std::span<const float> numbers) {
     }
     return {least, most};
 }
-
-/// Planes of cells, one a lane: see CellPlane.
-struct LanePlane {
-    Lanes corner[3], normal[3];
-
-    /// t of deviation.h is over() / under().
-    Lanes over(const Lanes* point) const {
-        return (corner[0] - point[0]) * normal[0] + (corner[1] - point[1]) * normal[1] +
-               (corner[2] - point[2]) * normal[2];
-    }
-    Lanes under(const Lanes* n) const { return n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2]; }
-};
 
 }  // namespace planet
