@@ -44,6 +44,7 @@ BumpyField pole_field() {
 BakeOptions options_with_geoid() {
     BakeOptions o;
     o.least_level = 6;
+    o.first_tile_level = 12;  // many tiles
     o.undulation = testing::bumpy_undulation;
     o.undulation_name = "made up";
     o.threads = 1;
