@@ -65,6 +65,25 @@ inline void store_lanes(const Lanes& v, double* to) {
     std::memcpy(to, &v, sizeof v);
 }
 
+inline Lanes widened_lanes(const float* from) {
+    NarrowLanes v;
+    std::memcpy(&v, from, sizeof v);
+    return __builtin_convertvector(v, Lanes);
+}
+
+/// 0, 1, 2, ...
+inline WholeLanes lane_numbers() {
+    WholeLanes v;
+    for (std::size_t w = 0; w < lane_count; ++w) v[w] = static_cast<std::int64_t>(w);
+    return v;
+}
+
+inline double least_lane(Lanes v) {
+    double least = v[0];
+    for (std::size_t w = 1; w < lane_count; ++w) least = v[w] < least ? v[w] : least;
+    return least;
+}
+
 /// Lane w is at(w).
 template <class At>
 inline Lanes gather_lanes(At at) {

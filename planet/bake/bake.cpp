@@ -79,6 +79,7 @@ class Bake {
         metadata_.quantum_m = options_.quantum_m > 0 ? options_.quantum_m : quantum_for(metadata_.finest_level, radius);
         metadata_.tiles = plan_.tiles();
         metadata_.vertices = plan_.vertices();
+        metadata_.vertices_by_level = plan_.vertices_by_level();
         report_.seconds.emplace_back("coverage",
                                      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
         tell("coverage", 1);
@@ -134,6 +135,9 @@ class Bake {
 }  // namespace
 
 BakeReport bake(const ElevationField& field, const BakeOptions& options, const std::filesystem::path& path) {
+    if (const auto store = store_of_leftover(path); !store.empty())
+        throw Error(Fault::bad_usage, path.string(), "is what a bake into " + store.string() + " may leave",
+                    "another name");
     Bake work(field, options);
     if (options.resume && !options.replace) {
         if (const auto finished = BakeFile::finished(path, work.metadata())) {

@@ -71,7 +71,9 @@ void TilePlan::count() {
             if (depth == 0) continue;
             const LocationCode root = root_at(above, k);
             ++tiles_;
-            vertices_ += tile_layout().vertex_count[static_cast<std::size_t>(depth)];
+            const std::uint64_t vertices = tile_layout().vertex_count[static_cast<std::size_t>(depth)];
+            vertices_ += vertices;
+            vertices_by_level_[root.bisection_level()] += vertices;
             finest_level_ = std::max(finest_level_, root.bisection_level() + depth);
         }
     }

@@ -10,6 +10,7 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -40,6 +41,7 @@ class TilePlan {
     std::vector<LocationCode> below(LocationCode root) const;
 
     std::uint64_t tiles() const { return tiles_; }
+    const std::map<int, std::uint64_t>& vertices_by_level() const { return vertices_by_level_; }  ///< of their roots
     std::uint64_t vertices() const { return vertices_; }  ///< of all tiles, those that tiles share counted in each
     int finest_level() const { return finest_level_; }
     std::size_t bytes() const { return blocks_.size() * (sizeof(Block) + 64); }
@@ -72,6 +74,7 @@ class TilePlan {
     // By the bits of the tile above; the faces are in block 0, by their bits.
     std::unordered_map<std::uint64_t, std::unique_ptr<Block>> blocks_;
     std::uint64_t tiles_ = 0, vertices_ = 0;
+    std::map<int, std::uint64_t> vertices_by_level_;
     int finest_level_ = 0;
 };
 

@@ -62,6 +62,13 @@ std::filesystem::path before(const std::filesystem::path& path) {
     return path.string() + "-beginning";
 }
 
+// The journal too: so no writer may have been killed in a transaction, or it has been rolled back.
+void remove_leftovers(const std::filesystem::path& path) {
+    std::error_code ignored;
+    for (const std::string_view ending : leftover_endings)
+        std::filesystem::remove(path.string().append(ending), ignored);
+}
+
 }  // namespace
 
 BakeFile::BakeFile(SqliteFile&& file, const StoreMetadata& metadata) : file_(std::move(file)), metadata_(metadata) {
@@ -75,6 +82,7 @@ std::optional<StoreMetadata> BakeFile::finished(const std::filesystem::path& pat
     const ElevationStore store = ElevationStore::open(path);
     check_is_same(path, store.metadata(), metadata);
     if (!store.metadata().complete) return std::nullopt;
+    remove_leftovers(path);
     return store.metadata();
 }
 
@@ -96,6 +104,9 @@ std::unique_ptr<BakeFile> BakeFile::resume(const std::filesystem::path& path, co
     resumed->file_.run("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE; COMMIT");
     resumed->metadata_ = read_metadata(resumed->file_);
     check_is_same(path, resumed->metadata_, metadata);
+    if (resumed->metadata_.format_version != store_format_version)
+        differ(path, "in format version " + std::to_string(resumed->metadata_.format_version));
+    if (!(resumed->metadata_.layers == metadata.layers)) differ(path, "its tiles begin at other levels");
     return resumed;
 }
 
@@ -177,6 +188,7 @@ void BakeFile::rewrite() {
     }
     file_ = SqliteFile({}, SqliteFile::Access::in_memory);  // closed before its file is replaced
     std::filesystem::rename(copy, path_, ignored);
+    remove_leftovers(path_);
     if (ignored) throw Error(Fault::bad_data, path_.string(), "cannot be replaced (" + ignored.message() + ")");
 }
 

@@ -15,27 +15,11 @@ constexpr double cancels = 1e-4;
 // Longest side over height at which a triangle has no area to speak of.
 constexpr double flat = 1e-14;
 
-bool longer(const Leaf& t, int i, int j) {
-    const auto a = t.squared[static_cast<std::size_t>(i)], b = t.squared[static_cast<std::size_t>(j)];
-    return a != b ? a > b : t.ages[i] < t.ages[j];
-}
-
-int longest_side(const Leaf& t) {
-    const int i = longer(t, 1, 0) ? 1 : 0;
-    return longer(t, 2, i) ? 2 : i;
-}
-
-Leaf turned(const Leaf& t, int first) {
-    Leaf out = t;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t from = (k + static_cast<std::size_t>(first)) % 3;
-        out.squared[k] = t.squared[from];
-        out.corner[k] = t.corner[from];
-        out.beyond[k] = t.beyond[from];
-    }
-    out.ages = t.ages.turned(first);
-    out.turn = static_cast<std::uint8_t>((t.turn + first) % 3);
-    return out;
+// Without branches, which would be guessed wrong every other time.
+unsigned longest_side(const SquaredSides& s, SideAges ages) {
+    const auto longer = [&](unsigned i, unsigned j) { return (s[i] > s[j]) | ((s[i] == s[j]) & (ages[i] < ages[j])); };
+    const unsigned i = longer(1, 0) ? 1 : 0;
+    return longer(2, i) ? 2 : i;
 }
 
 // The sides of base triangles by age: that with the lower vertex numbers is older.
@@ -46,14 +30,6 @@ SideAges base_ages(const std::array<std::uint32_t, 3>& corner) {
         return static_cast<unsigned>(ends[(k + 1) % 3] < ends[k]) + static_cast<unsigned>(ends[(k + 2) % 3] < ends[k]);
     };
     return {age(0), age(1), age(2)};
-}
-
-// The side from one vertex to another.
-std::size_t side_between(const Leaf& t, std::uint32_t from, std::uint32_t to) {
-    const std::size_t k = t.corner[0] == from ? 0 : t.corner[1] == from ? 1 : 2;
-    assert(t.corner[k] == from && t.corner[(k + 1) % 3] == to);
-    (void)to;
-    return k;
 }
 
 }  // namespace
@@ -85,14 +61,18 @@ LeafMesh::LeafMesh(const PlainMesh& base, const BisectionOptions& options)
             const glm::dvec3 d = p[(k + 1) % 3] - p[k];
             leaf.squared[k] = dot(d, d);
         }
-        const Leaf made = turned(leaf, longest_side(leaf));
-        if (!(length(cross(p[1] - p[0], p[2] - p[0])) > flat * made.squared[0]))
+        if (!(length(cross(p[1] - p[0], p[2] - p[0])) >
+              flat * *std::max_element(leaf.squared.begin(), leaf.squared.end())))
             throw Error(Fault::bad_data, "the mesh",
                         "triangle " + std::to_string(t) + " (vertices " + std::to_string(leaf.corner[0]) + ", " +
                             std::to_string(leaf.corner[1]) + ", " + std::to_string(leaf.corner[2]) + ") has no area" +
                             (options_.sides == SideGeometry::plan ? " in plan" : ""),
                         "triangles with one");
-        leaves_.push_back(made);
+        leaves_.emplace_back();
+        put(static_cast<Index>(t),
+            {leaf.squared, leaf.corner, leaf.beyond, leaf.ages, longest_side(leaf.squared, leaf.ages)}, leaf.name,
+            leaf.base, LeafKind::complete, {});
+        changed_count_ = 0;
     }
 }
 
@@ -133,57 +113,59 @@ double LeafMesh::median(const Leaf& t, Index v) const {
     return std::max(dot(d, d), DBL_MIN);
 }
 
-void LeafMesh::relink(Index outer, Index from, Index to, Index now) {
+void LeafMesh::relink(Index outer, Index from, [[maybe_unused]] Index to, Index now) {
     if (outer == none) return;
     Leaf& leaf = leaves_[outer];
-    leaf.beyond[side_between(leaf, from, to)] = now;
+    const std::size_t k = leaf.corner[1] == from ? 1 : leaf.corner[2] == from ? 2 : 0;
+    assert(leaf.corner[k] == from && leaf.corner[(k + 1) % 3] == to);
+    leaf.beyond[k] = now;
 }
 
-void LeafMesh::put(Index slot, Leaf made, int longest) {
-    leaves_[slot] = turned(made, longest);
+void LeafMesh::put(Index slot, const Half& half, Index name, Index base, LeafKind kind, SideAges parent_ages) {
+    constexpr std::array<std::uint8_t, 5> turn = {0, 1, 2, 0, 1};
+    const std::size_t i = half.longest, j = turn[i + 1], k = turn[i + 2];
+    Leaf& leaf = leaves_[slot];
+    leaf.squared = {half.squared[i], half.squared[j], half.squared[k]};
+    leaf.corner = {half.corner[i], half.corner[j], half.corner[k]};
+    leaf.beyond = {half.beyond[i], half.beyond[j], half.beyond[k]};
+    leaf.name = name;
+    leaf.base = base;
+    leaf.kind = kind;
+    leaf.turn = static_cast<std::uint8_t>(i);
+    leaf.flipped = false;
+    leaf.ages = half.ages.turned(half.longest);
+    leaf.parent_ages = parent_ages;
     note_changed(slot);
 }
 
-// Replaces a leaf by its halves. Their links across ab are left to the caller.
-LeafMesh::Halves LeafMesh::halve(Index slot, Index v, Index name) {
+// Replaces a leaf by its halves (a, v, c), in its slot, and (v, b, c). @return whether it becomes four
+bool LeafMesh::halve(Index slot, Index other, Index v, Index name, Index beyond_av, Index beyond_vb) {
     const Leaf t = leaves_[slot];
     const auto [a, b, c] = t.corner;
-    const auto other = static_cast<Index>(leaves_.size());
     const double m = median(t, v), quarter = t.squared[0] / 4;
-    const bool four =
-        options_.rule == BisectionRule::modified && t.kind == LeafKind::complete && becomes_four(t.squared, m);
-
-    Leaf first{}, second{};
-    first.squared = {quarter, m, t.squared[2]};
-    first.corner = {a, v, c};
-    first.beyond = {none, other, t.beyond[2]};
+    const bool complete = t.kind == LeafKind::complete;
+    const bool four = options_.rule == BisectionRule::modified && complete && becomes_four(t.squared, m);
+    Half first{{quarter, m, t.squared[2]}, {a, v, c}, {beyond_av, other, t.beyond[2]}, {}, 2};
+    Half second{{quarter, t.squared[1], m}, {v, b, c}, {beyond_vb, t.beyond[1], slot}, {}, 1};
     first.ages = t.ages[0] < t.ages[2] ? SideAges(0, 2, 1) : SideAges(1, 2, 0);
-    first.name = name;
-    second.squared = {quarter, t.squared[1], m};
-    second.corner = {v, b, c};
-    second.beyond = {none, t.beyond[1], slot};
     second.ages = t.ages[0] < t.ages[1] ? SideAges(0, 1, 2) : SideAges(1, 0, 2);
-    second.name = name + 1;
-    first.base = second.base = t.base;
+    // The longest sides of halves are sides of the triangle; quarters are split by nothing but what splits C'C, which is ca of
+    // (C, B', C') and bc of (A', C, C').
+    LeafKind first_kind = LeafKind::complete, second_kind = LeafKind::complete;
     if (four) {
-        first.kind = LeafKind::half_first;
-        second.kind = LeafKind::half_second;
-        first.parent_ages = second.parent_ages = t.ages;
-    } else if (t.kind == LeafKind::half_first) {
-        first.kind = LeafKind::quarter;
-        first.parent_ages = t.parent_ages;
-    } else if (t.kind == LeafKind::half_second) {
-        second.kind = LeafKind::quarter;
-        second.parent_ages = t.parent_ages;
+        first_kind = LeafKind::half_first;
+        second_kind = LeafKind::half_second;
+    } else {
+        if (t.kind == LeafKind::half_first) first_kind = LeafKind::quarter;
+        if (t.kind == LeafKind::half_second) second_kind = LeafKind::quarter;
+        if (first_kind == LeafKind::complete) first.longest = longest_side(first.squared, first.ages);
+        if (second_kind == LeafKind::complete) second.longest = longest_side(second.squared, second.ages);
     }
-    // Quarters are split by nothing but what splits C'C, which is ca of (C, B', C') and bc of (A', C, C').
-    const int first_longest = first.kind == LeafKind::complete ? longest_side(first) : 2;
-    const int second_longest = second.kind == LeafKind::complete ? longest_side(second) : 1;
-    leaves_.emplace_back();
-    put(slot, first, first_longest);
-    put(other, second, second_longest);
+    const SideAges parent_ages = complete ? t.ages : t.parent_ages;
+    put(slot, first, name, t.base, first_kind, parent_ages);
+    put(other, second, name + 1, t.base, second_kind, parent_ages);
     relink(t.beyond[1], c, b, other);
-    return {slot, other, (3 - first_longest) % 3, (3 - second_longest) % 3, four};
+    return four;
 }
 
 // Once both quarters at C'C are there, that gives way to A'B':
@@ -214,42 +196,36 @@ void LeafMesh::flip(Index first, Index second, double squared_ab) {
     relink(high.beyond[2], b1, c, second);
 }
 
-void LeafMesh::flip_if_both(Index half_slot, Index new_slot, double squared_ab) {
-    const Index q = leaves_[half_slot].kind == LeafKind::quarter ? half_slot : new_slot;
-    const Index r = leaves_[q].beyond[0];
-    if (leaves_[q].kind != LeafKind::quarter || leaves_[r].kind != LeafKind::quarter) return;
+// @param half what was split into the two leaves
+void LeafMesh::flip_if_both(const Leaf& half, Index first, Index second) {
+    const bool is_first = half.kind == LeafKind::half_first;
+    const Index q = is_first ? first : second, r = leaves_[q].beyond[0];
+    if (leaves_[r].kind != LeafKind::quarter) return;
     note_changed(r);
-    // B' of the quarter (C', C, B') is on the left of C'C.
-    q == half_slot ? flip(q, r, squared_ab) : flip(r, q, squared_ab);
+    const double squared_ab = is_first ? half.squared[1] : half.squared[2];
+    is_first ? flip(q, r, squared_ab) : flip(r, q, squared_ab);
 }
 
 void LeafMesh::split_terminal(Index slot) {
     const Leaf t = leaves_[slot];
     const Index n_slot = t.beyond[0];
-    assert(n_slot == none || mutual(t, leaves_[n_slot]));
+    const bool inner = n_slot != none;
+    assert(!inner || mutual(t, leaves_[n_slot]));
+    const Leaf n = inner ? leaves_[n_slot] : Leaf{};
     const auto name = static_cast<Index>(base_triangles_ + 4 * (flat_.size() - base_vertices_));
-    changed_count_ = 0;
+    const auto other = static_cast<Index>(leaves_.size()), n_other = inner ? other + 1 : none;
     const Index v = insert_vertex(t.corner[0], t.corner[1]);
-    SplitRecord record{.first = 3 * t.name + t.turn};
-    const Leaf n = n_slot == none ? Leaf{} : leaves_[n_slot];
-    const Halves mine = halve(slot, v, name);
-    if (mine.becomes_four) record.flags |= SplitRecord::first_becomes_four;
+    leaves_.resize(leaves_.size() + (inner ? 2 : 1));
+    changed_count_ = 0;
+    SplitRecord record{3 * t.name + t.turn, SplitRecord::no_side, 0};
+    if (halve(slot, other, v, name, n_other, n_slot)) record.flags |= SplitRecord::first_becomes_four;
     if (t.flipped) record.flags |= SplitRecord::over_flip;
-    if (n_slot != none) {
-        const Halves theirs = halve(n_slot, v, name + 2);
+    if (inner) {
         record.second = 3 * n.name + n.turn;
-        if (theirs.becomes_four) record.flags |= SplitRecord::second_becomes_four;
-        const auto link = [&](Index x, int i, Index y, int j) {
-            leaves_[x].beyond[static_cast<std::size_t>(i)] = y;
-            leaves_[y].beyond[static_cast<std::size_t>(j)] = x;
-        };
-        link(mine.first, mine.av, theirs.second, theirs.vb);
-        link(mine.second, mine.vb, theirs.first, theirs.av);
-        if (n.kind == LeafKind::half_first || n.kind == LeafKind::half_second)
-            flip_if_both(theirs.first, theirs.second, n.kind == LeafKind::half_first ? n.squared[1] : n.squared[2]);
+        if (halve(n_slot, n_other, v, name + 2, other, slot)) record.flags |= SplitRecord::second_becomes_four;
+        if (n.kind != LeafKind::complete) flip_if_both(n, n_slot, n_other);
     }
-    if (t.kind == LeafKind::half_first || t.kind == LeafKind::half_second)
-        flip_if_both(mine.first, mine.second, t.kind == LeafKind::half_first ? t.squared[1] : t.squared[2]);
+    if (t.kind != LeafKind::complete) flip_if_both(t, slot, other);
     records_.push_back(record);
 }
 

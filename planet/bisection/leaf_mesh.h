@@ -32,9 +32,13 @@ class SideAges {
   public:
     SideAges() = default;
     SideAges(unsigned ab, unsigned bc, unsigned ca) : bits_(static_cast<std::uint8_t>(ab | bc << 2 | ca << 4)) {}
-    unsigned operator[](int side) const { return bits_ >> (2 * side) & 3u; }
+    unsigned operator[](unsigned side) const { return bits_ >> (2 * side) & 3u; }
     /// With side `first` as side 0.
-    SideAges turned(int first) const { return {(*this)[first], (*this)[(first + 1) % 3], (*this)[(first + 2) % 3]}; }
+    SideAges turned(unsigned first) const {
+        SideAges out;
+        out.bits_ = static_cast<std::uint8_t>((bits_ >> 2 * first | bits_ << (6 - 2 * first)) & 63);
+        return out;
+    }
 
   private:
     std::uint8_t bits_ = 0;
@@ -105,8 +109,10 @@ class LeafMesh {
         const Leaf& leaf = leaves_[t];
         if (leaf.beyond[0] != none) prefetch_leaf(leaf.beyond[0]);
         if (leaf.beyond[1] != none) prefetch_leaf(leaf.beyond[1]);
-        __builtin_prefetch(&flat_[leaf.corner[0]]);
-        __builtin_prefetch(&flat_[leaf.corner[1]]);
+        for (const Index v : {leaf.corner[0], leaf.corner[1]}) {
+            __builtin_prefetch(&flat_[v].x);
+            __builtin_prefetch(&flat_[v].z);
+        }
     }
     void prefetch_beyond(Index t) const {
         const Index n = leaves_[t].beyond[0];
@@ -114,19 +120,21 @@ class LeafMesh {
     }
 
   private:
-    struct Halves {
-        Index first, second;  ///< slots of (a, v, c) and (v, b, c)
-        int av, vb;           ///< their sides on ab
-        bool becomes_four;
+    /// What a leaf is made from, its longest side not yet side 0.
+    struct Half {
+        SquaredSides squared;
+        std::array<Index, 3> corner, beyond;
+        SideAges ages;
+        unsigned longest;
     };
 
     Index insert_vertex(Index a, Index b);
     double median(const Leaf& t, Index v) const;
-    Halves halve(Index slot, Index v, Index name);
-    void put(Index slot, Leaf made, int longest);
+    bool halve(Index slot, Index other, Index v, Index name, Index beyond_av, Index beyond_vb);
+    void put(Index slot, const Half& half, Index name, Index base, LeafKind kind, SideAges parent_ages);
     void relink(Index outer, Index from, Index to, Index now);
     void flip(Index first, Index second, double squared_ab);
-    void flip_if_both(Index half_slot, Index new_slot, double squared_ab);
+    void flip_if_both(const Leaf& half, Index first, Index second);
     void note_changed(Index t) { changed_[changed_count_++] = t; }
 
     BisectionOptions options_;

@@ -75,13 +75,13 @@ class LengthQueue {
     bool stale(const Entry& e) const { return mesh_[e.leaf].squared[0] != e.squared; }
     // Memory answers after as long as a few splits take.
     void prefetch() {
-        const auto ahead = [&](std::size_t& done, std::size_t distance, auto fetch) {
+        const auto ahead = [&](std::size_t& done, std::size_t distance, auto&& fetch) {
             for (const std::size_t end = std::min(next_ + distance, sorted_.size()); done < end; ++done)
-                (mesh_.*fetch)(sorted_[done].leaf);
+                fetch(sorted_[done].leaf);
         };
-        ahead(fetched_[0], 24, &LeafMesh::prefetch_leaf);
-        ahead(fetched_[1], 16, &LeafMesh::prefetch_around);
-        ahead(fetched_[2], 8, &LeafMesh::prefetch_beyond);
+        ahead(fetched_[0], 24, [&](Index t) { mesh_.prefetch_leaf(t); });
+        ahead(fetched_[1], 16, [&](Index t) { mesh_.prefetch_around(t); });
+        ahead(fetched_[2], 8, [&](Index t) { mesh_.prefetch_beyond(t); });
     }
 
     // Sorts the next bucket in which anything is left. One of two leaves that share their longest sides is enough.

@@ -32,25 +32,19 @@ void Progressive::reserve(std::size_t splits) {
 
 std::array<Index, 3> Progressive::corners_of_child(Index vertex, int child) const {
     const Split& s = splits_[vertex - base_vertices_];
-    switch (child) {
-        case 0:
-            return {s.a, vertex, s.c};
-        case 1:
-            return {vertex, s.b, s.c};
-        case 2:
-            return {s.b, vertex, s.d};
-        default:
-            return {vertex, s.a, s.d};
-    }
+    const bool pair = child >= 2;
+    const Index from = pair ? s.b : s.a, to = pair ? s.a : s.b, across = pair ? s.d : s.c;
+    return child % 2 == 0 ? std::array{from, vertex, across} : std::array{vertex, to, across};
 }
 
 // std::nullopt for a side that no triangle has, or whose triangle is split already.
 std::optional<Progressive::Parent> Progressive::parent(Index side) const {
+    constexpr std::array<std::uint8_t, 5> turn = {0, 1, 2, 0, 1};
     const Index name = side / 3, k = side % 3, roots = static_cast<Index>(base_.triangles.size());
     if (name >= splitter_.size() || splitter_[name] != none) return std::nullopt;
     if (name < roots) {
         const auto& c = base_.triangles[name];
-        return Parent{c[k], c[(k + 1) % 3], c[(k + 2) % 3], false, -1};
+        return Parent{c[k], c[turn[k + 1]], c[turn[k + 2]], false, -1};
     }
     const Index maker = base_vertices_ + (name - roots) / 4;
     const int child = static_cast<int>((name - roots) & 3), pair = child / 2;
@@ -58,7 +52,7 @@ std::optional<Progressive::Parent> Progressive::parent(Index side) const {
     const Index apex = pair == 0 ? s.c : s.d;
     if (apex == none) return std::nullopt;
     const auto c = corners_of_child(maker, child);
-    Parent p{c[k], c[(k + 1) % 3], c[(k + 2) % 3], (s.flags & quarter_bits(pair, child % 2)) != 0, -1};
+    Parent p{c[k], c[turn[k + 1]], c[turn[k + 2]], (s.flags & quarter_bits(pair, child % 2)) != 0, -1};
     const unsigned four = pair == 0 ? SplitRecord::first_becomes_four : SplitRecord::second_becomes_four;
     if ((s.flags & four) != 0) {  // a half: only its side opposite to C' can be split, and the child at C is a quarter
         if (p.c != maker) return std::nullopt;
@@ -95,7 +89,7 @@ bool Progressive::append(const SplitRecord& record, const glm::dvec3* place) {
     splits_.push_back(s);
     splitter_[record.first / 3] = v;
     if (inner) splitter_[record.second / 3] = v;
-    splitter_.insert(splitter_.end(), 4, none);
+    splitter_.resize(splitter_.size() + 4, none);
     return true;
 }
 
@@ -115,7 +109,10 @@ void Progressive::prefetch_ends(const SplitRecord& record) const {
     if (name < roots || name >= splitter_.size()) return;
     const Split& s = splits_[(name - roots) / 4];
     for (const Index v : {s.a, s.b, s.c, s.d})
-        if (v != none) __builtin_prefetch(&places_[v]);
+        if (v != none) {
+            __builtin_prefetch(&places_[v].x);
+            __builtin_prefetch(&places_[v].z);
+        }
 }
 
 SplitSide Progressive::ends(Index vertex) const {

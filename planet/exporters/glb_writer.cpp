@@ -65,12 +65,13 @@ struct Layout {
     std::size_t vertices = 0, indices = 0;
     bool short_indices = false;
     Part positions{}, corners{}, normals{}, uv{}, picture{};
-    std::size_t bytes = 0;
+    std::size_t bytes = 0;  ///< of all, without padding behind the last
 
     void place(const MeshLooks& looks) {
         const auto put = [this](Part& part, std::size_t size) {
-            part = {bytes, size};
-            bytes += padded(size);
+            if (size == 0) return;
+            part = {padded(bytes), size};
+            bytes = part.offset + size;
         };
         put(positions, 12 * vertices);
         put(corners, (short_indices ? 2 : 4) * indices);
@@ -198,14 +199,14 @@ void write_glb(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReferenc
     layout.place(looks);
     std::string json = json_of(layout, reference, rounding, looks);
     json.resize(padded(json.size()), ' ');
-    const std::size_t size = 12 + 8 + json.size() + 8 + layout.bytes;
+    const std::size_t binary = padded(layout.bytes), size = 12 + 8 + json.size() + 8 + binary;
     if (size > std::numeric_limits<std::uint32_t>::max()) refuse_size(".glb", "files below 4 GiB; .ply holds more");
     const auto word = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
     constexpr std::uint32_t magic = 0x46546c67, json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
     BlockWriter out(sink);
     for (const std::uint32_t w : {magic, 2u, word(size), word(json.size()), json_chunk}) out.put(w);
     out.put_bytes(json);
-    for (const std::uint32_t w : {word(layout.bytes), binary_chunk}) out.put(w);
+    for (const std::uint32_t w : {word(binary), binary_chunk}) out.put(w);
     put_offsets(out, mesh, layout.root);
     put_indices(out, mesh, layout.short_indices);
     put_padding(out, layout.corners);

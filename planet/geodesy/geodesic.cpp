@@ -5,6 +5,7 @@
 #include <GeographicLib/PolygonArea.hpp>
 #include <cassert>
 #include <limits>
+#include <numbers>
 
 #include "planet/error.h"
 #include "planet/geodesy/geodetic.h"
@@ -42,6 +43,19 @@ GeodesicInverse Geodesics::inverse(const Geodetic& from, const Geodetic& to) con
     series_->geodesic.Inverse(latitude_degrees(from.latitude), from.longitude / degrees, latitude_degrees(to.latitude),
                               to.longitude / degrees, distance, start, end);
     return {distance, start * degrees, end * degrees};
+}
+
+// Karney (2013), section 4: other shortest lines set out at -azimuth, 180 degrees - azimuth, or at any.
+bool Geodesics::is_unique(const Geodetic& from, const Geodetic& to) const {
+    const GeodesicInverse line = inverse(from, to);
+    if (!(line.distance > 0.9 * std::numbers::pi * ellipsoid_.b)) return true;
+    for (const double azimuth :
+         {-line.start_azimuth, std::numbers::pi - line.start_azimuth, line.start_azimuth + std::numbers::pi / 2}) {
+        if (std::abs(std::remainder(azimuth - line.start_azimuth, 2 * std::numbers::pi)) < 1e-9) continue;
+        const GeodesicPoint end = direct(from, azimuth, line.distance);
+        if (inverse({end.latitude, end.longitude, {}}, to).distance < 1e-6) return false;
+    }
+    return true;
 }
 
 GeodesicPoint Geodesics::direct(const Geodetic& from, double azimuth, double distance_m) const {

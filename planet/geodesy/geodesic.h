@@ -44,6 +44,9 @@ class Geodesics {
     /// From the first position to the second. If several lines are equally short (antipodes), one of them.
     GeodesicInverse inverse(const Geodetic& from, const Geodetic& to) const;
     double distance(const Geodetic& from, const Geodetic& to) const { return inverse(from, to).distance; }
+    /// False if another line is as short to 1 um: near antipodes that mirror each other in the equator or the meridian, and
+    /// between the poles. Of places that are none: true.
+    bool is_unique(const Geodetic& from, const Geodetic& to) const;
 
     /// Where a line leads. @param azimuth rad, any finite. @param distance_m any finite; negative goes backwards.
     GeodesicPoint direct(const Geodetic& from, double azimuth, double distance_m) const;

@@ -24,6 +24,8 @@ class GrowingArray {
         data_ = std::move(grown);
         capacity_ = capacity;
     }
+    /// For so many more there is room.
+    std::size_t room() const { return capacity_ - size_; }
     /// Elements that are new are garbage.
     void resize(std::size_t size) {
         if (size > size_) reserve_more(size - size_);

@@ -13,6 +13,27 @@
 // f may depend on nothing but the diamond (and what is the same for all). Then all cells at a vertex compute the same
 // bits, from either end, and nothing cracks. Nothing pops if f is 0 where a vertex comes and goes, and f of a vertex is at
 // most that of those it depends on, as with fractions of saturated numbers: with a vertex goes its merging domain.
+//
+// A vertex shader does not know where the ends are by now. It takes the middle of their *places*, which is right once both
+// have arrived:
+//
+//     drawn = (1 - f) midpoint(places of ends) + f place
+//
+// **Nothing pops then if every vertex has arrived before one comes on a side that ends in it.** A vertex e comes at the
+// distance reach(e) = radius + K deviation. Before v comes, on a side with the end e, a diamond c between them has split,
+// and saturated numbers leave room for e to arrive:
+//
+//         A
+//        /|          reach(e) - reach(v) >= |e - c| + |c - v|        radii hold what is below, deviations do not grow
+//       c |          so where v comes, e has been nearer than reach(e) for |e - c| + |c - v| - |e - v| at least:
+//      /  |          ((a + b)^2 - g^2) / (2 radius), with a, b, g the three lengths on the ground, however high they are;
+//     L-v-e         (a + b)^2 - g^2 >= split side^2 / 8, the level's shortest (measured for all cells).
+//
+// So the mesh is drawn as a continuous function of the eye and of K: as the eye goes a step h, and K changes by k, no point
+// of the surface moves by more than the largest 1.5 |place - midpoint| / width (h + k deviation), whatever is split and
+// merged on the way. This holds for one K for test and morph. Sides below 30 m or so are an exception, as the split test
+// rounds a vertex to half a metre: these may jump by as much of their way. Tiles that are loaded bring their vertices at
+// once, and a step of a budget (BudgetSteps) is a change of K like any other.
 
 #include <algorithm>
 #include <array>
@@ -24,6 +45,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "planet/octahedron/cell_metrics.h"
 #include "planet/quadtree/triangulation.h"
 
 namespace planet {
@@ -35,6 +57,21 @@ inline double morph_fraction(double s, double whole = 2) {
     assert(whole > 1);
     if (!(s > 1)) return 0;
     const double t = (std::min(s, whole) - 1) / (whole - 1);
+    return t * t * (3 - 2 * t);
+}
+
+/// How much nearer than its reach an eye is, at most, when a vertex has arrived, see above: metres, > 0. What the split test
+/// rounds is taken off. @param bisection_level, radius_m of its diamond, exaggerated as in the split test
+inline constexpr double arrival_rounding_m = 0.5;
+inline double arrival_width(int bisection_level, double radius_m, double planet_radius_m) {
+    const double side = cell_metrics(bisection_level).split_min * planet_radius_m;
+    const double width = side * side / (18 * radius_m);  // an eighth, and a ninth of it to be safe
+    return std::max(width - 2 * arrival_rounding_m, 0.5 * width);
+}
+
+/// f of a vertex that a split test brings at a distance `reach`: 3 t^2 - 2 t^3, t = 0 from there on, 1 nearer by `width`.
+inline double arrival_fraction(double distance, double reach, double width) {
+    const double t = std::clamp((reach - arrival_rounding_m - distance) / width, 0.0, 1.0);
     return t * t * (3 - 2 * t);
 }
 

@@ -76,9 +76,8 @@ PlacedTile::StoredRecord PlacedTile::stored(std::size_t vertex) const {
 }
 
 void PlacedTile::place(const Placement& placement) {
-    static thread_local TileLattice lattice;
-    static thread_local std::vector<GeoidUndulation> undulation;
-    undulation.resize(undulation_.size());
+    TileLattice lattice;
+    std::vector<GeoidUndulation> undulation(undulation_.size());
     for (std::size_t v = 0; v < undulation.size(); ++v) undulation[v].m = static_cast<double>(undulation_[v]);
     lattice.set_normals(corners(root), depth);
     lattice.set_positions(placement, height, undulation, {});

@@ -49,6 +49,7 @@ class PlacedTile {
     class SplitRecords {
       public:
         SplitRecord operator[](std::size_t i) const { return by_vertex_[vertex_[i]]; }
+        void prefetch(std::size_t i) const { __builtin_prefetch(&by_vertex_[vertex_[i]]); }
 
       private:
         friend class PlacedTile;

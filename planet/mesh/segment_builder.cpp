@@ -4,11 +4,20 @@
 #include <cmath>
 #include <limits>
 
+#include "planet/lanes.h"
+#include "planet/mesh/morph.h"
+
 namespace planet {
 
 namespace {
 
 constexpr std::int32_t one = 32768;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// By how much |eye - m| < reach is decided.
+inline double margin_of(double distance2, double reach) {
+    return std::abs(std::sqrt(distance2) - reach);
+}
 
 /// u, v of the corners left, right, apex of a tile.
 struct TileCorners {
@@ -62,7 +71,7 @@ const std::array<std::uint16_t, tile_vertices>& split_cells() {
 }
 
 /// @param vertex of tile t
-MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t vertex) {
+MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t vertex, double planet_radius_m) {
     const TileLayout& layout = tile_layout();
     const GridPosition place = t->position[vertex];
     while (vertex < 3) {  // a corner: it splits a cell of a tile above
@@ -79,8 +88,11 @@ MorphVertex morph_of(const TileSource& tiles, const PlacedTile* t, std::size_t v
             grid_coordinate(a, axis) + grid_coordinate(b, axis) - 2 * grid_coordinate(place, axis);
         return static_cast<float>(static_cast<double>(twice) * (0.5 * grid_unit_m));
     };
-    const SplitRecord s = t->split[split_cells()[vertex]];
-    return {offset(0), offset(1), offset(2), s.deviation, s.radius};
+    const unsigned cell = split_cells()[vertex];
+    const int level = t->root.bisection_level() + static_cast<int>(std::bit_width(cell)) - 1;
+    const SplitRecord s = t->split[cell];
+    const double width = arrival_width(level, static_cast<double>(s.radius), planet_radius_m);
+    return {offset(0), offset(1), offset(2), s.deviation, s.radius, static_cast<float>(width)};
 }
 
 }  // namespace
@@ -110,34 +122,76 @@ void SegmentBuilder::build(const PlacedCell& cell, LocationCode half, std::vecto
     });
 }
 
+void SegmentBuilder::LeafStack::clear() {
+    shrink(leaf.size());
+}
+
+inline void SegmentBuilder::LeafStack::push(const Leaf& l, double d2, const SplitRecord& s, double least_margin) {
+    if (leaf.room() < lane_count) {  // whole lanes are read
+        leaf.reserve_more(lane_count);
+        distance2.reserve_more(lane_count);
+        radius.reserve_more(lane_count);
+        deviation.reserve_more(lane_count);
+        margin.reserve_more(lane_count);
+    }
+    leaf.push(l);
+    distance2.push(d2);
+    radius.push(s.radius);
+    deviation.push(s.deviation);
+    margin.push(least_margin);
+}
+
+void SegmentBuilder::LeafStack::shrink(std::size_t leaves) {
+    const std::size_t size = leaf.size() - leaves;
+    leaf.resize(size);
+    distance2.resize(size);
+    radius.resize(size);
+    deviation.resize(size);
+    margin.resize(size);
+}
+
 // The apex is the vertex that the leaf or its sibling will most likely add.
-inline int SegmentBuilder::push(const PlacedTile& t, unsigned i, int level) {
+inline int SegmentBuilder::push(const PlacedTile& t, unsigned i, int level, double d2, const SplitRecord& s,
+                                double margin, bool damaged) {
     const std::uint16_t apex = layout_.corners[i][2];
     __builtin_prefetch(&t.position[apex]);
     __builtin_prefetch(&t.height[apex]);
-    stack_.reserve_more(1);
-    stack_.push({&t, static_cast<std::uint16_t>(i), static_cast<std::uint8_t>(level)});
+    stack_.push({&t, static_cast<std::uint16_t>(i), static_cast<std::uint8_t>(level), t.damaged || damaged}, d2, s,
+                margin);
     return 1;
 }
 
 // find... return how many leaves a cell has left on the stack, at most segment_leaves, or `several` segments.
 int SegmentBuilder::find(const PlacedTile& t, unsigned i, int level) {
-    if (i >> t.depth) return find_below(t, i, level);
-    return test_(t.split[i]) ? find_in_children(t, i, level) : push(t, i, level);
+    if (i >> t.depth) return find_below(t, i, level, infinity);
+    const SplitRecord s = t.split[i];
+    const Compared own{test_.distance2(s), test_.reach(s)};
+    return test_(s) ? find_in_children(t, i, level, own) : push(t, i, level, own.distance2, s, infinity);
 }
 
-int SegmentBuilder::find_in_children(const PlacedTile& t, unsigned i, int level) {
+// A leaf stays one while its own test fails and that of its parent passes: then all above pass, as the test is nested.
+// @param own comparison of cell i
+int SegmentBuilder::find_in_children(const PlacedTile& t, unsigned i, int level, const Compared& own) {
     const unsigned first = 2 * i, second = first + 1;
     int a, b;
     ++level;
     if (first >> t.depth) {
-        a = find_below(t, first, level);
-        b = find_below(t, second, level);
+        const double margin = margin_of(own.distance2, own.reach);
+        a = find_below(t, first, level, margin);
+        b = find_below(t, second, level, margin);
     } else {
         // Both are tested before either is walked: the tests overlap.
-        const bool first_split = test_(t.split[first]), second_split = test_(t.split[second]);
-        a = first_split ? find_in_children(t, first, level) : push(t, first, level);
-        b = second_split ? find_in_children(t, second, level) : push(t, second, level);
+        const SplitRecord s0 = t.split[first], s1 = t.split[second];
+        const Compared c0{test_.distance2(s0), test_.reach(s0)}, c1{test_.distance2(s1), test_.reach(s1)};
+        const bool split0 = s0.deviation > 0 && c0.distance2<c0.reach * c0.reach, split1 = s1.deviation> 0 &&
+                            c1.distance2 < c1.reach * c1.reach;
+        if (split1 && !(2 * second >> t.depth)) {  // while the first is walked
+            t.split.prefetch(2 * second);
+            t.split.prefetch(2 * second + 1);
+        }
+        const double margin = split0 && split1 ? infinity : margin_of(own.distance2, own.reach);
+        a = split0 ? find_in_children(t, first, level, c0) : push(t, first, level, c0.distance2, s0, margin);
+        b = split1 ? find_in_children(t, second, level, c1) : push(t, second, level, c1.distance2, s1, margin);
     }
     if (a != several && b != several && a + b <= view_->segment_leaves) return a + b;
     if (b != several) finish({&t, second}, b);
@@ -145,11 +199,24 @@ int SegmentBuilder::find_in_children(const PlacedTile& t, unsigned i, int level)
     return several;
 }
 
-// Where the tile ends: a leaf, unless a tile below goes on.
-int SegmentBuilder::find_below(const PlacedTile& t, unsigned i, int level) {
-    const PlacedTile* below = t.child(*tiles_, t.position_below(i), test_);
-    if (below && test_(below->split[1])) return find_in_children(*below, 1, level);
-    return push(t, i, level);
+// Where the tile ends: a leaf, unless a tile below goes on. @param margin that of the parent
+int SegmentBuilder::find_below(const PlacedTile& t, unsigned i, int level, double margin) {
+    constexpr SplitRecord none{};
+    if (t.child_bound.empty()) return push(t, i, level, 0, none, margin);
+    const unsigned k = t.position_below(i);
+    const SplitRecord bound = t.child_bound[k];
+    const Compared at_bound{test_.distance2(bound), test_.reach(bound)};
+    if (!test_(bound)) return push(t, i, level, at_bound.distance2, bound, margin);
+    margin = std::min(margin, margin_of(at_bound.distance2, at_bound.reach));
+    const PlacedTile* below = t.child(*tiles_, k);
+    if (!below) {
+        const SplitRecord wanting{bound.x, bound.y, bound.z, -bound.deviation, bound.radius};
+        return push(t, i, level, at_bound.distance2, wanting, margin);
+    }
+    const SplitRecord s = below->split[1];
+    const Compared own{test_.distance2(s), test_.reach(s)};
+    if (test_(s)) return find_in_children(*below, 1, level, own);
+    return push(t, i, level, own.distance2, s, margin, below->damaged);
 }
 
 /// Makes a segment of the uppermost leaves of the stack.
@@ -163,7 +230,7 @@ void SegmentBuilder::finish(PlacedCell root, int leaves) {
                          .leaves = static_cast<std::uint32_t>(leaves)};
     if (purpose_ == Purpose::draw) make(segment);
     built_->push_back(segment);
-    stack_.resize(stack_.size() - segment.leaves);
+    stack_.shrink(segment.leaves);
 }
 
 void SegmentBuilder::make(BuiltSegment& segment) {
@@ -175,12 +242,8 @@ void SegmentBuilder::make(BuiltSegment& segment) {
     leaf_levels_.reserve_more(segment.leaves);
     if (view_->morph) morphs_.reserve_more(segment.leaves + 2);
     first_vertex_ = segment.first_vertex;
-    slack_ = Slack(test_.eye);
-    leaf_before_.tile = nullptr;
-    damaged_ = false;
-    ratio_max_ = deviation_max_ = 0;
-    worth_ = least_reach_ = std::numeric_limits<double>::infinity();
-    write_strip(segment);
+    segment.damaged = write_strip(segment);
+    certify(segment);
 
     const PlacedTile& t = *segment.root.tile;
     const int tile_level = t.root.bisection_level();
@@ -192,14 +255,10 @@ void SegmentBuilder::make(BuiltSegment& segment) {
     const int end_level = tile_level + t.depth;
     segment.detailed = end_level > view_->detail_level ||
                        (end_level + few > view_->detail_level && t.has_child_below(segment.root.local));
-    segment.damaged = damaged_;
-    segment.slack = slack_.metres();
-    segment.ratio_max = ratio_max_;
-    segment.least_reach = least_reach_;
-    segment.deviation_max = deviation_max_;
 }
 
-void SegmentBuilder::write_strip(const BuiltSegment& segment) {
+/// Returns whether a damaged tile is among those looked at.
+bool SegmentBuilder::write_strip(const BuiltSegment& segment) {
     const int level = segment.cell.bisection_level();
     strip_.end();
     // The states on the way down to a leaf; its path from the root, a bit a level.
@@ -207,16 +266,18 @@ void SegmentBuilder::write_strip(const BuiltSegment& segment) {
     state[0] = static_cast<std::uint8_t>(strip_state_of_segment(segment.cell));
     std::uint64_t path = 0;
     std::size_t depth = 0;
-    for (const Leaf& leaf : stack_.span().last(segment.leaves)) {
+    bool damaged = false;
+    for (const Leaf& leaf : stack_.leaf.span().last(segment.leaves)) {
         for (; depth < static_cast<std::size_t>(leaf.level - level); ++depth, path <<= 1)
             state[depth + 1] = strip_child_states[state[depth]][0];
         write(leaf, state[depth]);
-        certify(leaf, depth == 0);
+        damaged = damaged || leaf.damaged;
         const int finished = std::countr_one(path);
         path = path >> finished | 1;
         depth -= static_cast<std::size_t>(finished);
         if (depth > 0) state[depth] = strip_child_states[state[depth - 1]][1];
     }
+    return damaged;
 }
 
 void SegmentBuilder::write(const Leaf& leaf, unsigned state) {
@@ -236,52 +297,33 @@ std::uint32_t SegmentBuilder::add(const PlacedTile& t, std::uint16_t vertex) {
     vertices_.push(
         {t.position[vertex], static_cast<std::uint16_t>(frame_.u + (frame_.left_u * i + frame_.right_u * j) / 64),
          static_cast<std::uint16_t>(frame_.v + (frame_.left_v * i + frame_.right_v * j) / 64), t.height[vertex]});
-    if (view_->morph) morphs_.push(morph_of(*tiles_, &t, vertex));
+    if (view_->morph) morphs_.push(morph_of(*tiles_, &t, vertex, view_->radius_m));
     return static_cast<std::uint32_t>(vertices_.size() - 1 - first_vertex_);
 }
 
-// A diamond that is not split: its slack, if it could be, and its deviation over what the test allows at the nearest point
-// below it.
-inline void SegmentBuilder::certify(const SplitRecord& s, bool can_split) {
-    if (s.deviation == 0) return;
-    const double deviation = std::abs(static_cast<double>(s.deviation)), scaled = test_.K * deviation;
-    deviation_max_ = std::max(deviation_max_, deviation);
-    const double d2 = test_.distance2(s), r = static_cast<double>(s.radius);
-    if (can_split)
-        slack_.add(d2, r + scaled);
-    else
-        least_reach_ = std::min(least_reach_, std::max(std::sqrt(d2) - r, 0.0));
-    // scaled / (d - r) > ratio_max without a root or a division: most leaves are not the worst.
-    if (const double within = scaled * worth_ + r; d2 < within * within) [[unlikely]] {
-        ratio_max_ = std::max(ratio_max_, scaled / std::max(std::sqrt(d2) - r, 0.0));
-        worth_ = 1 / ratio_max_;
+// Of the uppermost leaves of the stack: how far the eye may move, and what is not split, its deviation over what the test
+// allows at the nearest point below it.
+void SegmentBuilder::certify(BuiltSegment& segment) const {
+    const std::size_t end = stack_.leaf.size();
+    const Lanes K = Lanes{} + test_.K, endless = Lanes{} + infinity, zero{};
+    Lanes margin = endless, least_reach = endless, ratio = zero, deviation_max = zero;
+    for (std::size_t at = end - segment.leaves; at < end; at += lane_count) {
+        const WholeLanes counted = lane_numbers() < static_cast<std::int64_t>(end - at);
+        const Lanes deviation = counted ? widened_lanes(&stack_.deviation[at]) : zero,
+                    radius = widened_lanes(&stack_.radius[at]), scaled = K * absolute(deviation),
+                    distance = square_root(load_lanes(&stack_.distance2[at])), beyond = larger(distance - radius, zero);
+        margin = smaller(margin, counted ? load_lanes(&stack_.margin[at]) : endless);
+        margin = smaller(margin, deviation > zero ? absolute(distance - (radius + scaled)) : endless);
+        least_reach = smaller(least_reach, deviation < zero ? beyond : endless);
+        ratio = larger(ratio, deviation != zero ? scaled / beyond : zero);
+        deviation_max = larger(deviation_max, absolute(deviation));
     }
-}
-
-// The leaf must go on to fail its test, and its parent to pass: then all above it pass, as the test is nested.
-void SegmentBuilder::certify(const Leaf& leaf, bool whole_segment) {
-    const PlacedTile& t = *leaf.tile;
-    const unsigned i = leaf.local;
-    damaged_ = damaged_ || t.damaged;
-    const bool sibling_was_leaf = (i & 1) != 0 && leaf_before_.tile == &t && leaf_before_.local == i - 1;
-    leaf_before_ = leaf;
-    if (!whole_segment && !sibling_was_leaf) slack_.add(test_, t.split[i >> 1]);
-    if (!(i >> t.depth)) {
-        const SplitRecord s = t.split[i];
-        certify(s, s.deviation > 0);
-    } else if (!t.child_bound.empty()) {
-        const unsigned k = t.position_below(i);
-        const SplitRecord& bound = t.child_bound[k];
-        const PlacedTile* below = t.child(*tiles_, k, test_);
-        if (test_(bound)) {
-            slack_.add(test_, bound);
-            const SplitRecord s = below ? below->split[1] : bound;
-            certify(s, below && s.deviation > 0);
-        } else {
-            certify(bound, true);
-        }
-        damaged_ = damaged_ || (below && below->damaged);
-    }
+    Slack slack(test_.eye);
+    slack.add_margin(least_lane(margin));
+    segment.slack = slack.metres();
+    segment.least_reach = least_lane(least_reach);
+    segment.ratio_max = -least_lane(-ratio);
+    segment.deviation_max = -least_lane(-deviation_max);
 }
 
 }  // namespace planet

@@ -19,15 +19,17 @@ struct SegmentVertex {
 };
 static_assert(sizeof(SegmentVertex) == 24);
 
-/// Where a vertex comes from and when: 20 bytes, as the GPU takes them.
+/// Where a vertex comes from and when, see Arrival in morph.h: 24 bytes, as the GPU takes them.
 struct MorphVertex {
     /// From the vertex to the middle of the side that it splits, ecef, metres, rounded once. 0 for corners of faces.
     float x, y, z;
     /// Of its diamond, metres, saturated and exaggerated as in its split test: the vertex comes where |eye - vertex| =
     /// radius + K deviation.
     float deviation, radius;
+    /// Metres, above 0: the vertex has arrived where the eye is that much nearer. Corners of faces: 0.
+    float width;
 };
-static_assert(sizeof(MorphVertex) == 20);
+static_assert(sizeof(MorphVertex) == 24);
 
 /// A cell, found. A cell that is a leaf where its tile ends is in the tile above.
 struct PlacedCell {
@@ -75,6 +77,23 @@ class SegmentBuilder {
         const PlacedTile* tile;
         std::uint16_t local;
         std::uint8_t level;
+        bool damaged;
+    };
+    /// A comparison "|eye - m| < reach" of the walk.
+    struct Compared {
+        double distance2, reach;
+    };
+    /// Leaves found and not yet in a segment, and what is to be certified of them: where deviation > 0, |eye - m| < radius
+    /// + K deviation must go on to fail; below 0, a tile is wanting that would go on; 0 cannot be split.
+    struct LeafStack {
+        GrowingArray<Leaf> leaf;
+        GrowingArray<double> distance2;  ///< |eye - m|^2 of its record
+        GrowingArray<float> radius, deviation;
+        GrowingArray<double> margin;  ///< metres: the least of the other comparisons that made it a leaf
+
+        void clear();
+        void push(const Leaf& l, double d2, const SplitRecord& s, double least_margin);
+        void shrink(std::size_t leaves);
     };
     /// A tile's lattice in the frame of a patch: u, v of its apex, and 64 times what a step of the lattice adds.
     struct Frame {
@@ -84,17 +103,17 @@ class SegmentBuilder {
     static constexpr int several = 0;
 
     int find(const PlacedTile& t, unsigned i, int level);
-    int find_in_children(const PlacedTile& t, unsigned i, int level);
-    int find_below(const PlacedTile& t, unsigned i, int level);
-    int push(const PlacedTile& t, unsigned i, int level);
+    int find_in_children(const PlacedTile& t, unsigned i, int level, const Compared& own);
+    int find_below(const PlacedTile& t, unsigned i, int level, double margin);
+    int push(const PlacedTile& t, unsigned i, int level, double d2, const SplitRecord& s, double margin,
+             bool damaged = false);
     void finish(PlacedCell root, int leaves);
     void make(BuiltSegment& segment);
-    void write_strip(const BuiltSegment& segment);
+    bool write_strip(const BuiltSegment& segment);
     void write(const Leaf& leaf, unsigned state);
     void enter(const PlacedTile& t);
     std::uint32_t add(const PlacedTile& t, std::uint16_t vertex);
-    void certify(const Leaf& leaf, bool whole_segment);
-    void certify(const SplitRecord& s, bool can_split);
+    void certify(BuiltSegment& segment) const;
 
     const TileSource* tiles_ = nullptr;
     SplitTest test_;
@@ -102,7 +121,7 @@ class SegmentBuilder {
     Purpose purpose_ = Purpose::draw;
     LocationCode half_, patch_;
     std::vector<BuiltSegment>* built_ = nullptr;
-    GrowingArray<Leaf> stack_;
+    LeafStack stack_;
 
     const TileLayout& layout_ = tile_layout();
     GrowingArray<SegmentVertex> vertices_;
@@ -111,11 +130,6 @@ class SegmentBuilder {
     StripWriter strip_;
     Frame frame_;
     std::size_t first_vertex_ = 0;
-    Slack slack_{glm::dvec3(0)};
-    Leaf leaf_before_{};
-    bool damaged_ = false;
-    double ratio_max_ = 0, deviation_max_ = 0, least_reach_ = 0;
-    double worth_ = 0;  // 1 / ratio_max_
 };
 
 }  // namespace planet

@@ -43,11 +43,12 @@ void copy(GrowingArray<T>& to, std::uint32_t at, std::span<const T> from, std::u
 
 /// A segment of a block, before it has a place.
 struct Segments::Part {
-    static constexpr std::uint32_t is_new = 0xffffffff;
+    static constexpr std::uint32_t none = 0xffffffff;
 
     LocationCode cell;
     std::uint32_t leaves;
-    std::uint32_t piece;  ///< as it is in the block, or is_new
+    std::uint32_t piece;  ///< as it is in the block, or whose cell is built anew, or none
+    bool is_new;
     BuiltSegment built{};
 };
 
@@ -55,9 +56,52 @@ struct Segments::Part {
 struct Segments::Job {
     PlacedCell cell;
     std::uint32_t block;
-    std::vector<Part> parts{};
-    const SegmentBuilder* builder = nullptr;
+    Worker* worker = nullptr;
+    std::size_t first_part = 0, part_count = 0;  ///< of the worker's
+
+    std::span<const Part> parts() const;
 };
+
+/// What a thread has built.
+struct Segments::Worker {
+    SegmentBuilder builder;
+    std::vector<BuiltSegment> built;
+    std::vector<Part> parts;
+};
+
+std::span<const Segments::Part> Segments::Job::parts() const {
+    return std::span<const Part>(worker->parts).subspan(first_part, part_count);
+}
+
+Segments::Segments() = default;
+Segments::Segments(Segments&&) noexcept = default;
+Segments& Segments::operator=(Segments&&) noexcept = default;
+Segments::~Segments() = default;
+
+void Segments::Sums::add(const Piece& piece, double ratio) {
+    leaves += piece.segment.leaves;
+    vertices += piece.segment.vertex_count;
+    indices += piece.segment.index_count;
+    damaged = damaged || piece.damaged;
+    ratio_max = std::max(ratio_max, ratio);
+    deviation_max = std::max(deviation_max, piece.deviation_max);
+}
+
+void Segments::Sums::add(const Sums& other) {
+    leaves += other.leaves;
+    vertices += other.vertices;
+    indices += other.indices;
+    damaged = damaged || other.damaged;
+    ratio_max = std::max(ratio_max, other.ratio_max);
+    deviation_max = std::max(deviation_max, other.deviation_max);
+}
+
+// Keeps the storage: blocks come and go with patches.
+void Segments::Block::clear() {
+    pieces.clear();
+    expires = SegmentNode::never;
+    sums = {};
+}
 
 void Segments::build(const TileSource& tiles, const SegmentView& view, int threads) {
     clear();
@@ -91,8 +135,11 @@ void Segments::invalidate(std::span<const LocationCode> tile_roots) {
 
 void Segments::clear() {
     tree_.clear();
-    blocks_.clear();
     free_blocks_.clear();
+    for (std::size_t i = blocks_.size(); i-- > 0;) {
+        blocks_[i].clear();
+        free_blocks_.push_back(static_cast<std::uint32_t>(i));
+    }
     segments_.clear();
     listed_ = false;
     vertex_places_.clear();
@@ -102,6 +149,7 @@ void Segments::clear() {
 
 std::vector<Segments::Job> Segments::stale_blocks() {
     std::vector<Job> jobs;
+    in_view_.clear();
     for (const auto [i, open] : tree_.in_view()) {
         SegmentNode& n = tree_.node(i);
         if (n.content == SegmentNode::none) {
@@ -113,6 +161,7 @@ std::vector<Segments::Job> Segments::stale_blocks() {
                 free_blocks_.pop_back();
             }
         }
+        in_view_.push_back({n.content, open});
         if (tree_.odometer() >= blocks_[n.content].expires) jobs.push_back({{n.tile, n.local}, n.content});
     }
     return jobs;
@@ -122,122 +171,150 @@ std::vector<Segments::Job> Segments::stale_blocks() {
 void Segments::build_all(const TileSource& tiles, std::span<Job> jobs, std::size_t threads) {
     constexpr std::size_t run = 4;
     const std::size_t workers = std::min(threads, (jobs.size() + run - 1) / run);
-    while (builders_.size() < workers) builders_.push_back(std::make_unique<SegmentBuilder>());
+    while (workers_.size() < workers) workers_.push_back(std::make_unique<Worker>());
     std::atomic<std::size_t> next = 0;
     parallel_for(workers, static_cast<unsigned>(workers), [&](std::size_t w) {
-        builders_[w]->begin(tiles, view_);
+        Worker& worker = *workers_[w];
+        worker.builder.begin(tiles, view_);
+        worker.parts.clear();
         for (std::size_t first; (first = next.fetch_add(run, std::memory_order_relaxed)) < jobs.size();)
-            for (Job& job : jobs.subspan(first, std::min(run, jobs.size() - first))) build(tiles, job, *builders_[w]);
+            for (Job& job : jobs.subspan(first, std::min(run, jobs.size() - first))) build(tiles, job, worker);
     });
 }
 
 // What has expired is built again and may come out as several; where halves have become small enough to be one segment,
 // it is made of them. Both depend on nothing but the leaves there are.
-void Segments::build(const TileSource& tiles, Job& job, SegmentBuilder& builder) const {
+void Segments::build(const TileSource& tiles, Job& job, Worker& worker) const {
     const Block& block = blocks_[job.block];
     const LocationCode half = job.cell.code();
-    job.builder = &builder;
-    std::vector<BuiltSegment> built;
+    std::vector<Part>& parts = worker.parts;
+    std::vector<BuiltSegment>& built = worker.built;
+    job.worker = &worker;
+    job.first_part = parts.size();
     const auto add = [&](const Part& part) {
-        job.parts.push_back(part);
-        while (job.parts.size() > 1) {
-            Part &a = job.parts[job.parts.size() - 2], &b = job.parts.back();
+        parts.push_back(part);
+        while (parts.size() > job.first_part + 1) {
+            Part &a = parts[parts.size() - 2], &b = parts.back();
             if (a.cell == half || a.cell.sibling() != b.cell ||
                 a.leaves + b.leaves > static_cast<std::uint32_t>(view_.segment_leaves))
                 return;
-            a = {.cell = a.cell.parent(), .leaves = a.leaves + b.leaves, .piece = Part::is_new};
-            job.parts.pop_back();
+            a = {.cell = a.cell.parent(), .leaves = a.leaves + b.leaves, .piece = Part::none, .is_new = true};
+            parts.pop_back();
         }
     };
-    const auto add_built = [&] {
-        for (const BuiltSegment& b : built)
-            add({.cell = b.cell, .leaves = b.leaves, .piece = Part::is_new, .built = b});
+    const auto build_cell = [&](const PlacedCell& cell, LocationCode code, std::uint32_t piece) {
         built.clear();
+        worker.builder.build(cell, half, built);
+        for (const BuiltSegment& b : built)
+            add({.cell = b.cell,
+                 .leaves = b.leaves,
+                 .piece = b.cell == code ? piece : Part::none,
+                 .is_new = true,
+                 .built = b});
     };
-    if (block.pieces.empty()) {
-        builder.build(job.cell, half, built);
-        add_built();
-    }
+    if (block.pieces.empty()) build_cell(job.cell, half, Part::none);
     for (std::uint32_t k = 0; k < block.pieces.size(); ++k) {
         const Piece& piece = block.pieces[k];
-        if (tree_.odometer() < piece.expires) {
-            add({.cell = piece.segment.root, .leaves = piece.segment.leaves, .piece = k});
-        } else {
-            builder.build(piece.root, half, built);
-            add_built();
-        }
+        if (tree_.odometer() < piece.expires)
+            add({.cell = piece.segment.root, .leaves = piece.segment.leaves, .piece = k, .is_new = false});
+        else
+            build_cell(piece.root, piece.segment.root, k);
     }
-    for (Part& part : job.parts)
-        if (part.piece == Part::is_new && part.built.leaves == 0) {
-            builder.build(find_split_cell(tiles, part.cell), half, built);
-            assert(built.size() == 1 && built[0].cell == part.cell && built[0].leaves == part.leaves);
-            part.built = built[0];
-            built.clear();
-        }
+    job.part_count = parts.size() - job.first_part;
+    for (std::size_t p = job.first_part; p < parts.size(); ++p) {
+        if (!parts[p].is_new || parts[p].built.leaves != 0) continue;
+        built.clear();
+        worker.builder.build(find_split_cell(tiles, parts[p].cell), half, built);
+        assert(built.size() == 1 && built[0].cell == parts[p].cell && built[0].leaves == parts[p].leaves);
+        parts[p].built = built[0];
+    }
 }
 
 void Segments::place(std::span<Job> jobs, std::size_t threads) {
-    for (Job& job : jobs) place(job);
+    for (const Job& job : jobs) place(job);
     join(changed_vertices_);
     join(changed_indices_);
     vertices_.resize(vertex_places_.size());
     if (view_.morph) morphs_.resize(vertex_places_.size());
     indices_.resize(index_places_.size());
     leaf_levels_.resize(index_places_.size());
-    constexpr std::size_t run = 16;
+    constexpr std::size_t run = 64;
     parallel_for((jobs.size() + run - 1) / run, static_cast<unsigned>(threads), [&](std::size_t r) {
-        for (const Job& job : jobs.subspan(r * run, std::min(run, jobs.size() - r * run)))
-            for (std::size_t k = 0; k < job.parts.size(); ++k) {
-                const auto& [cell, leaves, piece, b] = job.parts[k];
-                if (piece != Part::is_new) continue;
-                const Segment& s = blocks_[job.block].pieces[k].segment;
-                copy(vertices_, s.first_vertex, job.builder->vertices(), b.first_vertex, b.vertices);
-                if (view_.morph) copy(morphs_, s.first_vertex, job.builder->morphs(), b.first_vertex, b.vertices);
-                copy(indices_, s.first_index, job.builder->indices(), b.first_index, b.indices);
-                copy(leaf_levels_, s.first_leaf, job.builder->leaf_levels(), b.first_leaf, b.leaves);
-            }
+        for (const Job& job : jobs.subspan(r * run, std::min(run, jobs.size() - r * run))) copy_arrays(job);
     });
 }
 
-/// Gives places to the new parts of a block.
-void Segments::place(Job& job) {
-    Block& block = blocks_[job.block];
-    std::size_t next = 0;  // kept pieces are in order: those between them go
-    const auto release_until = [&](std::size_t end) {
-        for (; next < end; ++next) release(block.pieces[next].segment);
-    };
-    for (const Part& part : job.parts)
-        if (part.piece != Part::is_new) {
-            release_until(part.piece);
-            ++next;
-        }
-    release_until(block.pieces.size());
-
-    std::vector<Piece> pieces;
-    pieces.reserve(job.parts.size());
-    block.expires = infinity;
-    for (const Part& part : job.parts) {
-        pieces.push_back(part.piece == Part::is_new ? new_piece(part.built) : block.pieces[part.piece]);
-        block.expires = std::min(block.expires, pieces.back().expires);
+void Segments::copy_arrays(const Job& job) {
+    const SegmentBuilder& from = job.worker->builder;
+    const std::span<const Part> parts = job.parts();
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (!parts[k].is_new) continue;
+        const BuiltSegment& b = parts[k].built;
+        const Segment& s = blocks_[job.block].pieces[k].segment;
+        copy(vertices_, s.first_vertex, from.vertices(), b.first_vertex, b.vertices);
+        if (view_.morph) copy(morphs_, s.first_vertex, from.morphs(), b.first_vertex, b.vertices);
+        copy(indices_, s.first_index, from.indices(), b.first_index, b.indices);
+        copy(leaf_levels_, s.first_leaf, from.leaf_levels(), b.first_leaf, b.leaves);
     }
-    block.pieces = std::move(pieces);
 }
 
-Segments::Piece Segments::new_piece(const BuiltSegment& b) {
-    const Range vertices = vertex_places_.allocate(b.vertices), indices = index_places_.allocate(b.indices);
-    changed_vertices_.push_back(vertices);
-    changed_indices_.push_back(indices);
+/// Gives places to the new parts of a block.
+void Segments::place(const Job& job) {
+    Block& block = blocks_[job.block];
+    std::vector<Piece> old;
+    if (!block.pieces.empty()) old.swap(block.pieces);
+    std::size_t next = 0;  // parts name old pieces in order: those between them go
+    const auto release_until = [&](std::size_t end) {
+        for (; next < end; ++next) release(old[next]);
+    };
+    block.expires = block.least_reach = infinity;
+    block.odometer = tree_.odometer();
+    block.sums = {};
+    block.pieces.reserve(job.part_count);
+    for (const Part& part : job.parts()) {
+        const Piece* named = nullptr;
+        if (part.piece != Part::none) {
+            release_until(part.piece);
+            named = &old[next++];
+        }
+        const Piece& piece = block.pieces.emplace_back(part.is_new ? new_piece(part.built, named) : *named);
+        block.expires = std::min(block.expires, piece.expires);
+        block.least_reach = std::min(block.least_reach, piece.least_reach);
+        block.odometer = std::min(block.odometer, piece.odometer);
+        block.sums.add(piece, piece.ratio_max);
+    }
+    release_until(old.size());
+}
+
+// What is built again mostly has as many vertices as before, or nearly. What outgrew its place is likely to do so again.
+// @param old of the same cell, or nullptr
+Segments::Piece Segments::new_piece(const BuiltSegment& b, const Piece* old) {
+    Range vertices, indices;
+    if (old && b.vertices <= old->vertex_room && b.indices <= old->index_room) {
+        vertices = {old->segment.first_vertex, old->vertex_room};
+        indices = {old->segment.first_index, old->index_room};
+        total_leaves_ -= old->segment.leaves;
+    } else {
+        if (old) release(*old);
+        const auto room = [&](std::uint32_t count) { return old ? (count + 31) / 32 * 32 : count; };
+        vertices = vertex_places_.allocate(room(b.vertices));
+        indices = index_places_.allocate(room(b.indices));
+    }
+    changed_vertices_.push_back({vertices.first, b.vertices});
+    changed_indices_.push_back({indices.first, b.indices});
     total_leaves_ += b.leaves;
     ++built_;
     return {.segment = {.root = b.cell,
                         .patch = b.patch,
                         .first_vertex = vertices.first,
-                        .vertex_count = vertices.count,
+                        .vertex_count = b.vertices,
                         .first_index = indices.first,
-                        .index_count = indices.count,
+                        .index_count = b.indices,
                         .leaves = b.leaves,
                         .first_leaf = indices.first,
                         .detailed = b.detailed},
+            .vertex_room = vertices.count,
+            .index_room = indices.count,
             .sphere = b.sphere,
             .expires = tree_.expiry(b.slack),
             .ratio_max = b.ratio_max,
@@ -250,46 +327,56 @@ Segments::Piece Segments::new_piece(const BuiltSegment& b) {
 
 // While the slack holds, what could be split needs not: its ratio is at most 1. What lacks a tile has come nearer by what
 // the eye went at most, and the nearest by the largest factor.
-double Segments::ratio_of(const Piece& p) const {
-    const double gone = tree_.odometer() - p.odometer;
-    if (gone == 0 || p.ratio_max == 0) return p.ratio_max;
-    if (p.least_reach == infinity) return 1;
-    return gone < p.least_reach ? std::max(1.0, p.ratio_max * (p.least_reach / (p.least_reach - gone))) : infinity;
+double Segments::ratio_since(double odometer, double ratio_max, double least_reach) const {
+    const double gone = tree_.odometer() - odometer;
+    if (gone == 0 || ratio_max == 0) return ratio_max;
+    if (least_reach == infinity) return 1;
+    return gone < least_reach ? std::max(1.0, ratio_max * (least_reach / (least_reach - gone))) : infinity;
 }
 
 void Segments::list() {
     segments_.clear();
     sums_ = {};
+    block_leaves_ = 0;
     const CullingTest culling(view_.culling);
-    for (const auto [i, open] : tree_.in_view())
-        for (const Piece& p : blocks_[tree_.node(i).content].pieces) {
-            sums_.block_leaves += p.segment.leaves;
-            unsigned still_open = open;
-            if (culling.hidden(p.sphere.centre, p.sphere.radius, still_open)) continue;
-            segments_.push_back(p.segment);
-            sums_.leaves += p.segment.leaves;
-            sums_.vertices += p.segment.vertex_count;
-            sums_.indices += p.segment.index_count;
-            sums_.damaged = sums_.damaged || p.damaged;
-            sums_.ratio_max = std::max(sums_.ratio_max, ratio_of(p));
-            sums_.deviation_max = std::max(sums_.deviation_max, p.deviation_max);
+    for (std::size_t k = 0; k < in_view_.size(); ++k) {
+        if (k + 8 < in_view_.size()) __builtin_prefetch(blocks_[in_view_[k + 8].block].pieces.data());
+        const Block& block = blocks_[in_view_[k].block];
+        block_leaves_ += block.sums.leaves;
+        if (in_view_[k].open != 0) {
+            list_culled(block, culling, in_view_[k].open);
+            continue;
         }
-    kept_ = total_leaves_ - sums_.block_leaves;
+        for (const Piece& p : block.pieces) segments_.push_back(p.segment);
+        Sums sums = block.sums;
+        sums.ratio_max = ratio_since(block.odometer, sums.ratio_max, block.least_reach);
+        sums_.add(sums);
+    }
+    kept_ = total_leaves_ - block_leaves_;
+}
+
+void Segments::list_culled(const Block& block, const CullingTest& culling, unsigned open) {
+    for (const Piece& p : block.pieces) {
+        unsigned still_open = open;
+        if (culling.hidden(p.sphere.centre, p.sphere.radius, still_open)) continue;
+        segments_.push_back(p.segment);
+        sums_.add(p, ratio_since(p.odometer, p.ratio_max, p.least_reach));
+    }
 }
 
 void Segments::release_dropped() {
     for (const std::uint32_t i : tree_.dropped()) {
-        for (const Piece& p : blocks_[i].pieces) release(p.segment);
-        blocks_[i] = {};
+        for (const Piece& p : blocks_[i].pieces) release(p);
+        blocks_[i].clear();
         free_blocks_.push_back(i);
     }
     tree_.clear_dropped();
 }
 
-void Segments::release(const Segment& s) {
-    vertex_places_.free({s.first_vertex, s.vertex_count});
-    index_places_.free({s.first_index, s.index_count});
-    total_leaves_ -= s.leaves;
+void Segments::release(const Piece& p) {
+    vertex_places_.free({p.segment.first_vertex, p.vertex_room});
+    index_places_.free({p.segment.first_index, p.index_room});
+    total_leaves_ -= p.segment.leaves;
 }
 
 void Segments::shed_unseen() {
@@ -297,7 +384,7 @@ void Segments::shed_unseen() {
     for (const std::uint32_t i : tree_.hidden_longest_first()) {
         tree_.drop(i);
         release_dropped();
-        kept_ = total_leaves_ - sums_.block_leaves;
+        kept_ = total_leaves_ - block_leaves_;
         if (kept_ <= view_.kept_leaves) return;
     }
 }
@@ -319,9 +406,9 @@ std::uint64_t Segments::hash() const {
         }
         if (view_.morph)
             for (const MorphVertex& m : morphs().subspan(s.first_vertex, s.vertex_count)) {
-                std::uint32_t word[5];
+                std::uint64_t word[3];
                 std::memcpy(word, &m, sizeof m);
-                words(word, 5);
+                words(word, 3);
             }
         words(indices_.data() + s.first_index, s.index_count);
         words(leaf_levels_.data() + s.first_leaf, s.leaves);

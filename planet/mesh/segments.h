@@ -33,6 +33,11 @@ struct Segment {
 /// the number of threads; but for where it is in vertices() and indices(), and the certificate.
 class Segments {
   public:
+    Segments();
+    Segments(Segments&&) noexcept;
+    Segments& operator=(Segments&&) noexcept;
+    ~Segments();
+
     /// Makes all segments anew, one behind the other.
     void build(const TileSource& tiles, const SegmentView& view, int threads = 1);
 
@@ -80,9 +85,10 @@ class Segments {
     std::uint64_t hash() const;
 
   private:
-    /// A segment with a place.
+    /// A segment with a place, which may be larger than it: for when it is built again and comes out longer.
     struct Piece {
         Segment segment;
+        std::uint32_t vertex_room, index_room;
         Sphere sphere;
         double expires;  ///< see SegmentTree
         double ratio_max, least_reach, deviation_max;
@@ -90,30 +96,45 @@ class Segments {
         PlacedCell root;
         bool damaged;
     };
+    struct Sums {
+        std::size_t leaves = 0, vertices = 0, indices = 0;
+        bool damaged = false;
+        double ratio_max = 0, deviation_max = 0;
+
+        void add(const Piece& piece, double ratio);
+        void add(const Sums& other);
+    };
     /// The segments of a patch's half, in Sierpinski order.
     struct Block {
         std::vector<Piece> pieces;
         double expires = SegmentNode::never;  ///< the first of them
+        // Of all pieces, and what is needed to say how large a ratio has grown since.
+        Sums sums;
+        double odometer = 0, least_reach = 0;
+
+        void clear();
     };
-    struct Job;
+    struct InView {
+        std::uint32_t block;
+        unsigned open;  ///< see SegmentTree::InView
+    };
     struct Part;
-    struct Sums {
-        std::size_t leaves = 0, vertices = 0, indices = 0, block_leaves = 0;
-        bool damaged = false;
-        double ratio_max = 0, deviation_max = 0;
-    };
+    struct Job;
+    struct Worker;
 
     void clear();
     std::vector<Job> stale_blocks();
     void build_all(const TileSource& tiles, std::span<Job> jobs, std::size_t threads);
-    void build(const TileSource& tiles, Job& job, SegmentBuilder& builder) const;
+    void build(const TileSource& tiles, Job& job, Worker& worker) const;
     void place(std::span<Job> jobs, std::size_t threads);
-    void place(Job& job);
-    double ratio_of(const Piece& piece) const;
-    Piece new_piece(const BuiltSegment& b);
+    void place(const Job& job);
+    void copy_arrays(const Job& job);
+    double ratio_since(double odometer, double ratio_max, double least_reach) const;
+    Piece new_piece(const BuiltSegment& b, const Piece* old);
     void list();
+    void list_culled(const Block& block, const CullingTest& culling, unsigned open);
     void release_dropped();
-    void release(const Segment& s);
+    void release(const Piece& piece);
     void shed_unseen();
 
     SegmentTree tree_;
@@ -122,7 +143,8 @@ class Segments {
     bool listed_ = false;  // segments_ is that of view_
     std::vector<Block> blocks_;
     std::vector<std::uint32_t> free_blocks_;
-    std::vector<std::unique_ptr<SegmentBuilder>> builders_;
+    std::vector<InView> in_view_;
+    std::vector<std::unique_ptr<Worker>> workers_;
 
     RangeAllocator vertex_places_, index_places_;  // levels have the place of indices
     GrowingArray<SegmentVertex> vertices_;
@@ -132,7 +154,7 @@ class Segments {
 
     std::vector<Segment> segments_;
     std::vector<Range> changed_vertices_, changed_indices_;
-    std::size_t built_ = 0, total_leaves_ = 0, kept_ = 0;
+    std::size_t built_ = 0, total_leaves_ = 0, block_leaves_ = 0, kept_ = 0;
     Sums sums_;
 };
 

@@ -49,6 +49,9 @@ class Slack {
         if (s.deviation > 0) add(test.distance2(s), test.reach(s));
     }
 
+    /// @param margin | |eye - m| - reach | as computed, metres
+    void add_margin(double margin) { least_ = std::min(least_, margin); }
+
     /// Metres, >= 0; infinity if nothing was compared. In doubles |eye - m| and reach are good to 1e-15 of themselves, and
     /// where they are near each other both are at most |eye| + farthest_m + slack: what is taken off covers that ten times.
     double metres() const { return std::max(0.0, least_ * (1 - 1e-14) - rounding_); }

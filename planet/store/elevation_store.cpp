@@ -40,6 +40,17 @@ Header read_header(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::filesystem::path store_of_leftover(const std::filesystem::path& path) {
+    std::filesystem::path store;
+    for (const std::string_view ending : leftover_endings) {  // of two that fit, the longer one
+        const std::string& name = path.native();
+        if (!name.ends_with(ending) || path.filename().native().size() == ending.size()) continue;
+        const std::string rest = name.substr(0, name.size() - ending.size());
+        if (store.empty() || rest.size() < store.native().size()) store = rest;
+    }
+    return store;
+}
+
 void check_store_file(const std::filesystem::path& path) {
     const Header h = read_header(path);
     if (big_endian(h, 68) != store_application_id) refuse(path, "an SQLite file, but not an elevation store");
@@ -100,6 +111,9 @@ ElevationStore ElevationStore::open(const std::filesystem::path& path) {
     std::error_code fault;
     if (!std::filesystem::exists(path, fault)) refuse(path, "no such file");
     if (!std::filesystem::is_regular_file(path, fault)) refuse(path, "not a file");
+    if (const auto store = store_of_leftover(path); !store.empty())
+        throw Error(Fault::bad_data, path.string(), "what a bake left beside its store when it was stopped",
+                    store.string() + ", or octaglobe bake --resume into that, which removes this");
     if (has_journal(path)) {
         read_header(path);
         SqliteFile recovering(path, SqliteFile::Access::recover);

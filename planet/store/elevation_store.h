@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,7 +42,9 @@ struct StoreMetadata {
     double resampling_max_m = 0;
     std::uint64_t tiles = 0;
     std::uint64_t vertices = 0;  ///< of all tiles, those that tiles share counted in each
-    bool complete = false;       ///< the bake came to its end; before, resampling_max_m is that of the tiles so far
+    /// The same by the level at which tiles begin. Empty for stores of version 2.
+    std::map<int, std::uint64_t> vertices_by_level;
+    bool complete = false;  ///< the bake came to its end; before, resampling_max_m is that of the tiles so far
     BakeSettings settings;
     std::vector<SourceInfo> sources;
 };
@@ -61,7 +64,8 @@ class ElevationStore {
   public:
     /// Opens a store for reading. A store whose writer was killed is rolled back to its last transaction first; any
     /// other is not written to, and must not be written by others meanwhile.
-    /// Throws Error(bad_data): missing, empty, not a store, cut short, of a newer version, damaged.
+    /// Throws Error(bad_data): missing, empty, not a store or what a bake left beside one, cut short, of a newer version,
+    /// damaged.
     static ElevationStore open(const std::filesystem::path& path);
     /// The same, to draw or to query: Error(bad_data) too if the store is of another planet or not complete.
     static ElevationStore open(const std::filesystem::path& path, const Ellipsoid& expected);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "planet/error.h"
 
@@ -32,6 +33,14 @@ std::string_view text_of(VerticalDatum datum) {
 
 using Entries = std::map<std::string, std::string>;
 
+// "0:17160 12:1523732"
+std::string text_of(const std::map<int, std::uint64_t>& by_level) {
+    std::string text;
+    for (const auto& [level, count] : by_level)
+        text += (text.empty() ? "" : " ") + std::to_string(level) + ":" + std::to_string(count);
+    return text;
+}
+
 Entries entries_of(const StoreMetadata& m) {
     return {{"ellipsoid", std::string(m.ellipsoid.name)},
             {"ellipsoid_a_m", shortest(m.ellipsoid.a)},
@@ -44,6 +53,7 @@ Entries entries_of(const StoreMetadata& m) {
             {"resampling_max_m", shortest(m.resampling_max_m)},
             {"tiles", std::to_string(m.tiles)},
             {"vertices", std::to_string(m.vertices)},
+            {"vertices_by_level", text_of(m.vertices_by_level)},
             {"bake_least_level", std::to_string(m.settings.least_level)},
             {"bake_finest_level", std::to_string(m.settings.finest_level)},
             {"bake_extra_levels", std::to_string(m.settings.extra_levels)},
@@ -79,6 +89,16 @@ class EntryReader {
         if (fault != std::errc{} || end != t.data() + t.size() || !(v >= least && v <= most))
             fail(key, "is \"" + t + "\"");
         return v;
+    }
+    std::map<int, std::uint64_t> by_level(const char* key) const {
+        std::map<int, std::uint64_t> counts;
+        std::istringstream in(text(key));
+        int level;
+        char colon;
+        std::uint64_t count;
+        while (in >> level >> colon >> count) counts[level] = count;
+        if (text_of(counts) != text(key)) fail(key, "is \"" + text(key) + "\"");
+        return counts;
     }
     [[noreturn]] void fail(std::string_view key, std::string_view what) const {
         throw Error(Fault::bad_data, where_, "the metadata is damaged: " + std::string(key) + " " + std::string(what));
@@ -162,7 +182,10 @@ StoreMetadata read_metadata(SqliteFile& file) {
     m.undulation = read.text("undulation");
     m.quantum_m = read.number<double>("quantum_m", least_quantum_m, most_quantum_m);
     m.format_version = static_cast<int>(file.number("PRAGMA user_version"));
-    if (m.format_version > 2) m.layers.first = read.number<int>("first_tile_level", 1, tile_levels);
+    if (m.format_version > 2) {
+        m.layers.first = read.number<int>("first_tile_level", 1, tile_levels);
+        m.vertices_by_level = read.by_level("vertices_by_level");
+    }
     m.finest_level = read.number<int>("finest_level", 1, max_bisection_level);
     m.resampling_max_m = read.number<double>("resampling_max_m", 0, 1e9);
     m.tiles = read.number<std::uint64_t>("tiles", 0, std::uint64_t{1} << 60);

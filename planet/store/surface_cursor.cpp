@@ -122,4 +122,30 @@ double SurfaceCursor::height(const glm::dvec3& n) {
     return h - (l * undulation_[0] + r * undulation_[1] + a * undulation_[2]) / (l + r + a);
 }
 
+// Of the corners left, right and apex: barycentric where the ray along n meets the plane of their normals. On a side they
+// do not depend on the third corner.
+glm::dvec3 SurfaceCursor::weights(const glm::dvec3& n) const {
+    const auto& [left, right, apex] = path_.back().corners;
+    const double l = triple(n, right, apex), r = triple(n, apex, left), a = triple(n, left, right);
+    return glm::dvec3(l, r, a) / (l + r + a);
+}
+
+double SurfaceCursor::interpolated_height(const glm::dvec3& n) const {
+    const Step& step = path_.back();
+    const auto& vertex = tile_layout().corners[step.local];
+    glm::dvec3 heights;
+    for (int k = 0; k < 3; ++k)
+        heights[k] = static_cast<double>(step.tile->height[vertex[static_cast<std::size_t>(k)]]);
+    return glm::dot(weights(n), heights);
+}
+
+double SurfaceCursor::undulation(const glm::dvec3& n) const {
+    const Step& step = path_.back();
+    if (step.tile->undulation.empty()) return 0;
+    const auto& vertex = tile_layout().corners[step.local];
+    glm::dvec3 undulations;
+    for (int k = 0; k < 3; ++k) undulations[k] = step.tile->undulation[vertex[static_cast<std::size_t>(k)]].m;
+    return glm::dot(weights(n), undulations);
+}
+
 }  // namespace planet

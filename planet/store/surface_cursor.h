@@ -35,6 +35,12 @@ class SurfaceCursor {
     /// meets the plane, less the undulation there, linear between the corners.
     double height(const glm::dvec3& normal);
 
+    /// The same, linear between the corners' heights: without the sag of the plane, which is a chord of the curved planet
+    /// and passes below a level sea by up to side^2 / 8 R, 1.6 m in cells of 9 km. Continuous; equal to height() at corners.
+    double interpolated_height(const glm::dvec3& normal) const;
+    /// Of the datum above the ellipsoid, metres, linear between the corners; 0 if the store knows none.
+    double undulation(const glm::dvec3& normal) const;
+
   private:
     struct Step {
         Corners corners;
@@ -50,6 +56,7 @@ class SurfaceCursor {
     void start(const glm::dvec3& n);
     bool enter_tile_below(Step& step);
     void set_plane();
+    glm::dvec3 weights(const glm::dvec3& n) const;
 
     const TileReader* tiles_;
     Placement placement_;

@@ -17,7 +17,7 @@ struct TileScale {
     Placement placement;          ///< at exaggeration 1
     double quantum_m = 0.25;      ///< of heights: a power of two
     bool has_undulation = false;  ///< whether tiles hold the datum's height above the ellipsoid
-    TileLayers layers;
+    TileLayers layers = {};
 };
 
 /// Undulations are whole multiples of this at vertices that split cells of levels below undulation_level (2.7 km apart

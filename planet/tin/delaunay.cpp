@@ -203,30 +203,31 @@ bool Delaunay::is_ear(std::span<const Index> polygon, std::size_t i) const {
     return true;
 }
 
-bool Delaunay::plan_removal(Index v) {
+bool Delaunay::begin_removal(Index v) {
     if (!collect_star(v)) return false;
     planned_vertex_ = v;
     filling_.clear();
     ears_.clear();
     left_.clear();
     for (std::uint32_t i = 0; i < ring_.size(); ++i) left_.push_back(i);
-    std::size_t i = 0, missed = 0;
-    while (left_.size() > 3) {
-        if (i >= left_.size()) i = 0;
-        if (!is_ear(ring_, i)) {
-            if (++missed > left_.size()) return false;
-            ++i;
-            continue;
-        }
-        missed = 0;
-        const std::size_t n = left_.size();
-        ears_.push_back({left_[(i + n - 1) % n], left_[i], left_[(i + 1) % n]});
-        left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(i));
+    ear_ = 0;
+    return true;
+}
+
+// Two places are left after the last ear; more if there is none.
+bool Delaunay::cut_ear() {
+    const std::size_t n = left_.size();
+    if (n < 3) return false;
+    if (n == 3) ear_ = 1;
+    for (std::size_t missed = 0; !is_ear(ring_, ear_); ++missed) {
+        if (n == 3 || missed == n) return false;
+        ear_ = ear_ + 1 < n ? ear_ + 1 : 0;
     }
-    ears_.push_back({left_[0], left_[1], left_[2]});
-    for (const auto& ear : ears_) filling_.push_back({ring_[ear[0]], ring_[ear[1]], ring_[ear[2]]});
-    const auto& last = filling_.back();
-    return orientation(point_[last[0]], point_[last[1]], point_[last[2]]) > 0;
+    ears_.push_back({left_[(ear_ + n - 1) % n], left_[ear_], left_[(ear_ + 1) % n]});
+    filling_.push_back({ring_[ears_.back()[0]], ring_[ears_.back()[1]], ring_[ears_.back()[2]]});
+    left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(ear_));
+    if (ear_ + 1 == n) ear_ = 0;
+    return true;
 }
 
 void Delaunay::remove_planned() {

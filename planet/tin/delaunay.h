@@ -36,6 +36,8 @@ inline std::int64_t orientation(glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) {
 inline bool in_circle(glm::ivec2 a, glm::ivec2 b, glm::ivec2 c, glm::ivec2 p) {
     const std::int64_t ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y, cx = c.x - p.x, cy = c.y - p.y;
     const std::int64_t aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
+    if ((aa | bb | cc) < 1 << 29)  // three products below 2^59
+        return aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx) > 0;
     return Int128(aa) * (bx * cy - by * cx) + Int128(bb) * (cx * ay - cy * ax) + Int128(cc) * (ax * by - ay * bx) > 0;
 }
 
@@ -109,7 +111,17 @@ class Delaunay {
 
     /// Finds the triangles that would fill the star of a vertex. @return false if it is on the border, ends or lies on
     /// a constrained side, or constrained sides about it leave no Delaunay filling
-    bool plan_removal(Index v);
+    bool plan_removal(Index v) {
+        return plan_removal(v, [](const std::array<Index, 3>&) { return true; });
+    }
+    /// The same with accept(triangle) called for each of them as it is found: returning false gives up.
+    template <class Accept>
+    bool plan_removal(Index v, Accept&& accept) {
+        if (!begin_removal(v)) return false;
+        while (cut_ear())
+            if (!accept(filling_.back())) return false;
+        return left_.size() == 2;
+    }
     /// Triangles that would be.
     std::span<const std::array<Index, 3>> filling() const { return filling_; }
     /// Does what was planned; changed() has the filling, in the same order.
@@ -157,6 +169,8 @@ class Delaunay {
     }
     void set_constrained(Index e);
     bool collect_star(Index v);
+    bool begin_removal(Index v);
+    bool cut_ear();
     bool is_ear(std::span<const Index> polygon, std::size_t i) const;
     void flip(Index e);
     void force_side(Index from, Index to, std::span<const Index> sides);
@@ -179,6 +193,7 @@ class Delaunay {
     std::vector<std::array<Index, 3>> filling_;
     std::vector<std::array<std::uint32_t, 3>> ears_;  ///< places in the ring
     std::vector<std::uint32_t> left_;                 ///< places in the ring that are not cut off yet
+    std::size_t ear_ = 0;                             ///< place in left_ where the next ear is looked for
     std::array<Index, 2> crossed_{none, none};
 };
 

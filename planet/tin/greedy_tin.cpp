@@ -34,11 +34,12 @@ class GreedyInsertion {
                         std::to_string(report_.triangles) + " or more");
         insert_while_due();
         if (!measure_->exact()) {  // what it has missed
+            if (past_best()) return_to_best();
             measure_ = local_.get();
             report_.end = GreedyEnd::tolerance;
             insert_while_due();
         }
-        if (report_.end == GreedyEnd::budget && judged() > best_) {
+        if (past_best()) {
             return_to_best();
             fill_up();
         }
@@ -92,6 +93,8 @@ class GreedyInsertion {
         if (measure_->adds_up()) return added_up_;
         return priority_.empty() ? 0 : priority_.top_key().priority;
     }
+
+    bool past_best() const { return report_.end == GreedyEnd::budget && judged() > best_; }
 
     double certified_deviation() const {
         double largest = 0;
@@ -151,7 +154,7 @@ class GreedyInsertion {
         std::vector<glm::ivec2> again;
         for (std::size_t v = start_.vertex_slots(); v < best_vertices_; ++v)
             again.push_back(mesh_.point(static_cast<Index>(v)));
-        report_.taken_back = mesh_.vertex_slots() - best_vertices_;
+        report_.taken_back += mesh_.vertex_slots() - best_vertices_;
         mesh_ = start_;
         report_.triangles = start_triangles_;
         for (const glm::ivec2 p : again) {

@@ -23,6 +23,7 @@ HeightGrid::HeightGrid(const Raster& raster) : width_(raster.width), height_(ras
             heights_[i] = static_cast<float>(h);
             if (std::isnan(h)) continue;
             ++valid;
+            whole_metres_ = whole_metres_ && is_whole(heights_[i]);
             sample_rounding_ = std::max(sample_rounding_, std::abs(h - static_cast<double>(heights_[i])));
         }
     if (valid == 0) throw Error(Fault::bad_data, raster.name, "has no valid sample");
@@ -35,6 +36,7 @@ HeightGrid::HeightGrid(const HeightGrid& whole, glm::ivec2 low, glm::ivec2 high)
     heights_.resize(count() + readable_beyond);
     for (int y = 0; y < height_; ++y)
         std::copy_n(whole.row(low.y + y) + low.x, width_, heights_.begin() + std::ptrdiff_t{y} * width_);
+    whole_metres_ = whole.whole_metres_;
     has_void_ = whole.has_void_ && std::any_of(heights_.begin(), heights_.end(), [](float h) { return std::isnan(h); });
 }
 

@@ -36,6 +36,9 @@ class HeightGrid {
     /// Largest |height of the source - height here|, metres: floats hold whole metres and most else exactly.
     double sample_rounding() const { return sample_rounding_; }
 
+    /// Whether every height is a whole number of metres below 2^22: differences of two are whole numbers too.
+    bool whole_metres() const { return whole_metres_; }
+
     /// Eight floats beyond the end may be read.
     const float* row(int y) const {
         return heights_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
@@ -48,13 +51,16 @@ class HeightGrid {
         heights_[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(p.x)] =
             height;
         has_void_ = has_void_ || std::isnan(height);
+        whole_metres_ = whole_metres_ && (std::isnan(height) || is_whole(height));
     }
 
   private:
+    static bool is_whole(float height) { return std::abs(height) < 0x1p22f && height == std::floor(height); }
+
     static constexpr std::size_t readable_beyond = 8;
 
     int width_, height_;
-    bool has_void_ = false;
+    bool has_void_ = false, whole_metres_ = true;
     double sample_rounding_ = 0;
     std::vector<float> heights_;
 };

@@ -66,7 +66,9 @@ class QuickInsertion {
         bool all = true;
         for (Index t = 0; t < mesh_.triangle_slots(); ++t) {
             if (!mesh_.alive(t)) continue;
-            WorstSample<double> worst = worst_sample<double>(grid_, sorted(t), options_.tolerance);
+            const SortedTriangle triangle = sorted(t);
+            if (floats_decide(grid_, triangle, options_.tolerance)) continue;
+            WorstSample<double> worst = worst_sample<double>(grid_, triangle, options_.tolerance);
             if (worst.deviation > options_.tolerance && on_border(worst.sample)) worst = worst_inside<double>(t);
             if (!(worst.deviation > options_.tolerance)) continue;
             waiting_[t].worst = {static_cast<float>(worst.deviation), worst.sample};

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <glm/glm.hpp>
@@ -177,6 +178,15 @@ Real largest(const Values<Real>& values) {
 }
 
 }  // namespace scan
+
+/// Whether distances in float say of every sample what exact ones would: is it farther than the tolerance? So it is
+/// where heights and tolerance are whole metres and their products with the area whole numbers that floats hold; a
+/// sample so far away that they do not is beyond the tolerance whatever the rounding.
+inline bool floats_decide(const HeightGrid& grid, const SortedTriangle& t, double tolerance) {
+    if (!grid.whole_metres() || tolerance != std::floor(tolerance)) return false;
+    const double relief = std::max({t.ha, t.hb, t.hc}) - std::min({t.ha, t.hb, t.hc});
+    return static_cast<double>(std::abs(t.area)) * (relief + tolerance + 2) < 0x1p23;
+}
 
 /// Void samples are passed over. In float, distances are off by 1e-6 of the triangle's relief at most, or not at all
 /// (ScaledDistances); in double they certify.

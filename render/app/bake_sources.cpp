@@ -30,6 +30,15 @@ void check_files(const std::vector<std::string>& files, const fs::path& output) 
             throw Error(Fault::bad_usage, files[i], "is a source twice", "each file once");
 }
 
+std::vector<std::string> files_of(const BakeCommand& command) {
+    std::vector<std::string> files;
+    for (const std::string& source : command.sources) {
+        const auto found = planet::files_of_pattern(source);
+        files.insert(files.end(), found.begin(), found.end());
+    }
+    return files;
+}
+
 }  // namespace
 
 void check_bake_sources(const BakeCommand& command) {
@@ -38,12 +47,7 @@ void check_bake_sources(const BakeCommand& command) {
         throw Error(Fault::bad_usage, "--datum",
                     std::to_string(given) + " for " + std::to_string(command.sources.size()) + " sources",
                     "one for all, or one for each in their order");
-    std::vector<std::string> files;
-    for (const std::string& source : command.sources) {
-        const auto found = planet::files_of_pattern(source);
-        files.insert(files.end(), found.begin(), found.end());
-    }
-    check_files(files, command.output);
+    check_files(files_of(command), command.output);
 }
 
 std::shared_ptr<const planet::ElevationField> open_bake_sources(const BakeCommand& command,
@@ -51,7 +55,10 @@ std::shared_ptr<const planet::ElevationField> open_bake_sources(const BakeComman
                                                                 std::size_t memory_bytes,
                                                                 const std::function<void(double)>& progress) {
     std::shared_ptr<const planet::ElevationField> base;
-    if (command.over_earth) base = open_earth({}).heights;
+    if (command.over_earth) {
+        const std::vector<std::string> files = files_of(command);
+        base = open_earth({.covering = {files.begin(), files.end()}}).heights;
+    }
     if (command.sources.empty()) return base;
     std::vector<planet::SourceSpec> specs;
     for (const std::string& source : command.sources) {

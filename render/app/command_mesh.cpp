@@ -24,16 +24,6 @@ std::string file_name(Where where, const std::string& text) {
     return text;
 }
 
-std::filesystem::path picture_name(Where where, const std::string& text) {
-    std::filesystem::path path = file_name(where, text);
-    std::string ending = path.extension().native();
-    for (char& c : ending)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff"})
-        if (ending == known) return path;
-    throw Error(Fault::bad_usage, where, shown(text) + " has no ending of a picture", ".png, .jpg or .tif");
-}
-
 void add_what(CLI::App& command, MeshOptions& o) {
     add_value(command, "dem", "FILE", "A raster of heights in any format and CRS that GDAL reads, or a heightmap",
               [&](Where where, const std::string& text) { o.source = file_name(where, text); });
@@ -97,7 +87,7 @@ void add_where_to(CLI::App& command, MeshOptions& o) {
                   o.datum = static_cast<planet::VerticalDatum>(parse_choice(where, text, {"egm96", "ellipsoid"}));
               });
     add_value(command, "--picture", "FILE", "A picture of the triangles: .png, .jpg or .tif",
-              [&](Where where, const std::string& text) { o.picture = picture_name(where, text); });
+              [&](Where where, const std::string& text) { o.picture = parse_picture_name(where, text); });
     add_value(command, "--size", "WxH", "Of the picture [1600 wide, as high as the terrain; the planet 1600x1600]",
               [&](Where where, const std::string& text) {
                   const PictureSize size = parse_size(where, text);

@@ -25,6 +25,15 @@ void fill(Report& report, const RenderOptions& options, const PictureReport& pic
     report.set("latitude_deg", options.at.latitude / planet::degrees);
     report.set("longitude_deg", options.at.longitude / planet::degrees);
     report.set("eye_height_m", picture.eye_height_m);
+    if (const auto& centre = picture.centre) {
+        report.set("centre_latitude_deg", centre->place.latitude / planet::degrees);
+        report.set("centre_longitude_deg", centre->place.longitude / planet::degrees);
+        report.set("centre_height_m", centre->ground.height);
+        report.set("centre_height_bound_m",
+                   centre->ground.bound > 0 ? nlohmann::ordered_json(centre->ground.bound) : nlohmann::ordered_json());
+        report.set("centre_range_m", centre->range_m);
+        report.set("centre_deviation_m", centre->deviation_m);
+    }
     report.set("time", planet::iso8601_from_utc(options.time));
     report.set("triangles", picture.triangles);
     report.set("vertices", picture.vertices);

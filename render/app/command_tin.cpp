@@ -61,13 +61,13 @@ void add_how_much(CLI::App& command, TinCommand& o) {
               [&](Where where, const std::string& text) {
                   o.quality = static_cast<planet::TinQuality>(parse_choice(where, text, {"fast", "standard", "best"}));
               });
-    add_value(
-        command, "--metric", "METRIC",
-        "What is refined first: local (the largest deviation), regional (the region with most of it)\n"
-        "or rms (with most of its square) [local]",
-        [&](Where where, const std::string& text) {
-            o.measure.metric = static_cast<TinMetricName>(parse_choice(where, text, {"local", "regional", "rms"}));
-        });
+    add_value(command, "--metric", "METRIC",
+              "What is refined first: local (the largest deviation), regional (the region with most of it),\n"
+              "rms (with most of its square), or gpu (local, measured by drawing) [local]",
+              [&](Where where, const std::string& text) {
+                  o.measure.metric =
+                      static_cast<TinMetricName>(parse_choice(where, text, {"local", "regional", "rms", "gpu"}));
+              });
     add_value(command, "--locate", "WAY",
               "How samples find their triangle: auto, or as the iterative TIN was published, by cells or naive:\n"
               "the same result as greedy insertion without a grid, for comparison [auto]",
@@ -88,10 +88,12 @@ void add_shape(CLI::App& command, TinCommand& o) {
               [&](Where where, const std::string& text) {
                   o.exaggeration = parse_number(where, text, {0.01, 100});
               });
-    add_value(command, "--base", "METRES", "A solid, for printing: walls, and a floor so far below the lowest sample",
-              [&](Where where, const std::string& text) {
-                  o.base = parse_distance(where, text, {1e-3, largest_base_m});
-              });
+    add_value(
+        command, "--base", "METRES",
+        "A solid, for printing: walls, and a floor so far below the lowest sample,\nbesides the triangles of a budget",
+        [&](Where where, const std::string& text) {
+            o.base = parse_distance(where, text, {1e-3, largest_base_m});
+        });
 }
 
 void add_where_to(CLI::App& command, TinCommand& o) {
@@ -112,6 +114,12 @@ void add_where_to(CLI::App& command, TinCommand& o) {
               [&](Where where, const std::string& text) { o.error_grid = file_name(where, text); });
     add_value(command, "--drape", "FILE", "A picture that covers the raster edge to edge, put into a .glb",
               [&](Where where, const std::string& text) { o.drape = file_name(where, text); });
+    add_value(command, "--picture", "FILE",
+              "A picture of steps towards it, each over the deviations it set out from: .png, .jpg or .tif",
+              [&](Where where, const std::string& text) { o.picture = parse_picture_name(where, text); });
+    add_value(command, "--stages", "COUNT,...", "Triangles at each step of the picture [50,150,250,450,750,1050]",
+              [&](Where where, const std::string& text) { o.stages = parse_wholes(where, text, 3, 4'000'000'000); })
+        ->needs("--picture");
     add_json_option(command, o.json);
 }
 
@@ -124,12 +132,13 @@ bool same_file(const std::optional<std::filesystem::path>& a, const std::optiona
 }
 
 void check_files(const TinCommand& o) {
-    require(o.output || o.error_grid || !o.json.empty(), "tin", "nothing to write",
-            "-o FILE, --error-grid FILE or --json FILE");
+    require(o.output || o.error_grid || o.picture || !o.json.empty(), "tin", "nothing to write",
+            "-o FILE, --error-grid FILE, --picture FILE or --json FILE");
     std::optional<std::filesystem::path> json;
     if (!o.json.empty()) json = o.json;
-    require(!same_file(o.output, json) && !same_file(o.output, o.error_grid) && !same_file(o.error_grid, json), "tin",
-            "one file for two things", "--output, --error-grid and --json with a file each");
+    require(!same_file(o.output, json) && !same_file(o.output, o.error_grid) && !same_file(o.error_grid, json) &&
+                !same_file(o.picture, json) && !same_file(o.picture, o.output) && !same_file(o.picture, o.error_grid),
+            "tin", "one file for two things", "--output, --error-grid, --picture and --json with a file each");
     if (!o.drape) return;
     const bool glb = o.tile > 0 ? o.tile_format == planet::MeshFormat::glb
                                 : o.output && planet::mesh_format(o.output->native()) == planet::MeshFormat::glb;
@@ -143,6 +152,7 @@ void check_tiles(const TinCommand& o) {
     require(!o.max_triangles, "--tile", "goes with no budget", "--max-deviation alone");
     require(o.features.empty(), "--tile", "goes with no features: they make one mesh", "--features without --tile");
     require(o.measure.plain(), "--tile", "goes with the local metric only", "--metric local --locate auto");
+    require(!o.picture, "--tile", "goes with no picture of steps, which are of one mesh", "--picture without --tile");
     require(!o.base, "--tile", "goes with no solid", "--base without --tile");
 }
 

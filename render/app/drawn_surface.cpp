@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/geoid.h"
@@ -29,7 +28,9 @@ DrawnSurface::DrawnSurface(std::shared_ptr<const planet::ElevationStore> s, cons
     : store(s),
       exaggeration(options.exaggeration),
       field(s, options.memory_bytes),
-      tiles(field.cache(), {store->metadata().ellipsoid, exaggeration}) {}
+      tiles(field.cache(), {store->metadata().ellipsoid, exaggeration}) {
+    if (!store->metadata().undulation.empty()) geoid.emplace(data_file("egm96-15.pgm"));
+}
 
 PatchSurface DrawnSurface::for_patches() const {
     return {.heights = [this](auto normals, auto heights) { field.heights(normals, heights); },
@@ -49,24 +50,23 @@ double DrawnSurface::occluder_radius() const {
     return store->metadata().ellipsoid.b + lowest - deepest_geoid_m;
 }
 
+double DrawnSurface::ground(const glm::dvec3& normal) const {
+    const double undulation = geoid ? geoid->undulation(normal).m : 0;
+    return static_cast<double>(field.height(normal)) * exaggeration + undulation;
+}
+
 Camera DrawnSurface::camera(const RenderOptions& o) const {
     const glm::dvec3 n = planet::normal_from_geodetic(o.at.latitude, o.at.longitude);
-    std::optional<planet::Geoid> geoid;  // a store that knows no geoid is drawn on the ellipsoid
-    if (!store->metadata().undulation.empty()) geoid.emplace(data_file("egm96-15.pgm"));
-    const auto ground_at = [&](const glm::dvec3& normal) {
-        const double undulation = geoid ? geoid->undulation(normal).m : 0;
-        return static_cast<double>(field.height(normal)) * exaggeration + undulation;
-    };
-    const double ground = ground_at(n);
+    const double ground_h = ground(n);
     glm::dvec3 eye;
     if (o.height) {
-        eye = planet::ecef_from_normal(wgs84, n, {ground + *o.height});
+        eye = planet::ecef_from_normal(wgs84, n, {ground_h + *o.height});
     } else {
         const double range = o.range.value_or(whole_globe_range(o.fov));
-        eye = planet::ecef_from_normal(wgs84, n, {ground}) - range * look_direction(n, o.heading, o.pitch);
+        eye = planet::ecef_from_normal(wgs84, n, {ground_h}) - range * look_direction(n, o.heading, o.pitch);
         // A shallow view can start inside a mountain: the eye then stands on it.
         const planet::NormalPosition p = planet::position_from_ecef(wgs84, eye);
-        const double floor = ground_at(p.normal) + std::min(2.0, range);
+        const double floor = ground(p.normal) + std::min(2.0, range);
         if (p.h.m < floor) eye = planet::ecef_from_normal(wgs84, p.normal, {floor});
     }
     return make_camera(eye, n, o.heading, o.pitch, focal_length_px(o.fov, o.size.width, o.size.height), o.size.width,

@@ -2,7 +2,9 @@
 // The surface that is drawn, and where the eye stands above it.
 
 #include <memory>
+#include <optional>
 
+#include "planet/geodesy/geoid.h"
 #include "planet/store/store_field.h"
 #include "planet/streaming/store_tiles.h"
 #include "render/app/render_options.h"
@@ -16,6 +18,7 @@ struct DrawnSurface {
     double exaggeration;
     planet::StoreField field;
     planet::StoreTiles tiles;
+    std::optional<planet::Geoid> geoid;  ///< a store that knows no geoid is drawn on the ellipsoid
 
     DrawnSurface(std::shared_ptr<const planet::ElevationStore> store, const RenderOptions& options);
 
@@ -23,6 +26,8 @@ struct DrawnSurface {
     PatchSurface for_patches() const;
     /// The radius of a ball about the planet's centre below all terrain, m.
     double occluder_radius() const;
+    /// The drawn ground at a unit geodetic normal, exaggeration and geoid included: metres above the ellipsoid.
+    double ground(const glm::dvec3& normal) const;
     /// The camera of a picture: over the ground as it is drawn, exaggeration and geoid included, never below it.
     Camera camera(const RenderOptions& options) const;
 };

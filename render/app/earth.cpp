@@ -1,5 +1,7 @@
 #include "render/app/earth.h"
 
+#include <algorithm>
+
 #include "planet/elevation/layered_field.h"
 #include "planet/elevation/raster_field.h"
 #include "planet/elevation/raster_io.h"
@@ -18,6 +20,16 @@ constexpr const char* land_file = "land_mask.tif";  // same grid, 1 on land
 constexpr const char* regional_files[] = {"sangre_de_cristo.tif"};
 constexpr const char* geoid_file = "egm96-15.pgm";
 
+bool is_among(const std::filesystem::path& file, const std::vector<std::filesystem::path>& others) {
+    std::error_code missing;
+    const auto is_same = [&](const std::filesystem::path& other) {
+        return std::filesystem::is_regular_file(other, missing) &&
+               std::filesystem::file_size(other, missing) == std::filesystem::file_size(file) &&
+               planet::sha256_of_file(other) == planet::sha256_of_file(file);
+    };
+    return std::any_of(others.begin(), others.end(), is_same);
+}
+
 }  // namespace
 
 Earth open_earth(const EarthSources& sources) {
@@ -30,7 +42,8 @@ Earth open_earth(const EarthSources& sources) {
     layers.push_back(planet::make_surface_field(planet::read_raster(data_file(relief_file)),
                                                 planet::read_raster(data_file(land_file)), VerticalDatum::egm96));
     for (const char* file : regional_files)
-        layers.push_back(planet::open_raster_field(data_file(file), VerticalDatum::egm96));
+        if (!is_among(data_file(file), sources.covering))
+            layers.push_back(planet::open_raster_field(data_file(file), VerticalDatum::egm96));
     layers.insert(layers.end(), named.begin(), named.end());
     auto undulation = [geoid](auto normals, auto out) { geoid->undulations(normals, out); };
     auto heights =

@@ -16,6 +16,8 @@ namespace render {
 struct EarthSources {
     std::vector<std::filesystem::path> elevation{};                        ///< over the shipped data, the last on top
     planet::VerticalDatum elevation_datum = planet::VerticalDatum::egm96;  ///< of all of these
+    /// What will lie above all this: a shipped raster that is the same as one of these files is left out.
+    std::vector<std::filesystem::path> covering{};
 };
 
 /// The drawn surface: land as it is, the sea at 0.

@@ -15,7 +15,6 @@ using planet::wgs84;
 constexpr double patch_pixels = 96;
 /// A patch of this many bisection levels above the finest has two texels between the vertices of the surface.
 constexpr int finest_patch_above = 10;
-constexpr std::size_t patch_limit = 1800;
 
 std::size_t detailed_patches(const planet::Segments& segments) {
     std::set<planet::LocationCode> patches;
@@ -26,18 +25,33 @@ std::size_t detailed_patches(const planet::Segments& segments) {
 
 }  // namespace
 
+planet::SegmentView part_view(const RenderOptions& options, const DrawnSurface& surface, const Camera& camera,
+                              const PicturePart& part, double segment_angle) {
+    planet::SegmentView view;
+    view.test = {camera.eye, planet::split_reach(camera.focal_px, camera.tan_corner(), options.max_pixel_deviation)};
+    view.culling = camera.culling(part, surface.occluder_radius());
+    view.radius_m = wgs84.mean_radius();
+    view.finest_patch_level = std::max(surface.store->metadata().finest_level - finest_patch_above, 0);
+    view.segment_angle = segment_angle;
+    return view;
+}
+
+double first_segment_angle(const Camera& camera) {
+    return patch_pixels / camera.focal_px;
+}
+
 void PartMesher::build(const PicturePart& part, PartMesh& mesh) {
-    double segment_angle = patch_pixels / camera_.focal_px, coarsening;
+    double segment_angle = first_segment_angle(camera_), coarsening;
     do {
-        mesh.view = view(part, segment_angle);
+        mesh.view = part_view(options_, surface_, camera_, part, segment_angle);
         steps_.time("mesh", [&] {
             const Fineness fine = fineness(segment_angle);
             mesh.view.test.K = fine.K;
             coarsening = fine.coarsening;
             build_segments(mesh);
         });
-        segment_angle *= 1.5;
-    } while (detailed_patches(mesh.segments) > patch_limit && segment_angle < 10);
+        segment_angle *= segment_angle_step;
+    } while (detailed_patches(mesh.segments) > patch_limit && segment_angle < largest_segment_angle);
     certify(mesh, coarsening);
     steps_.time("normals", [&] {
         mesh.patches.build(mesh.segments, surface_.for_patches(), wgs84.mean_radius(),
@@ -45,20 +59,10 @@ void PartMesher::build(const PicturePart& part, PartMesh& mesh) {
     });
 }
 
-planet::SegmentView PartMesher::view(const PicturePart& part, double segment_angle) const {
-    planet::SegmentView view;
-    view.test = {camera_.eye,
-                 planet::split_reach(camera_.focal_px, camera_.tan_corner(), options_.max_pixel_deviation)};
-    view.culling = camera_.culling(part, surface_.occluder_radius());
-    view.radius_m = wgs84.mean_radius();
-    view.finest_patch_level = std::max(surface_.store->metadata().finest_level - finest_patch_above, 0);
-    view.segment_angle = segment_angle;
-    return view;
-}
-
 // A budget is the whole picture's, so that its parts fit together.
 PartMesher::Fineness PartMesher::fineness(double segment_angle) {
-    const planet::SegmentView whole = view({0, 0, camera_.width, camera_.height}, segment_angle);
+    const planet::SegmentView whole =
+        part_view(options_, surface_, camera_, {0, 0, camera_.width, camera_.height}, segment_angle);
     if (!options_.max_triangles) return {whole.test.K, 1};
     const auto [known, is_new] = fineness_.try_emplace(segment_angle);
     if (is_new) {

@@ -22,6 +22,15 @@ struct PartMesh {
     double pixel_deviation_max = 0;  ///< pixels, certified; infinite if a damaged tile hides what is beside the eye
 };
 
+/// What a part of a picture asks of its mesh, as fine as the options say. @param segment_angle see planet::SegmentView
+planet::SegmentView part_view(const RenderOptions& options, const DrawnSurface& surface, const Camera& camera,
+                              const PicturePart& part, double segment_angle);
+
+/// Where the angle begins, and what it is multiplied with while there are more patches than that.
+double first_segment_angle(const Camera& camera);
+inline constexpr double segment_angle_step = 1.5, largest_segment_angle = 10;
+inline constexpr std::size_t patch_limit = 1800;
+
 /// Makes one mesh at a time, settled: every tile that the part needs is waited for.
 class PartMesher {
   public:
@@ -41,7 +50,6 @@ class PartMesher {
     struct Fineness {
         double K, coarsening;
     };
-    planet::SegmentView view(const PicturePart& part, double segment_angle) const;
     Fineness fineness(double segment_angle);
     void build_segments(PartMesh& mesh);
     void certify(PartMesh& mesh, double coarsening) const;

@@ -6,20 +6,18 @@
 #include <cmath>
 #include <future>
 
-#include "planet/geodesy/earth_rotation.h"
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/sun.h"
+#include "planet/mesh/pick.h"
 #include "render/app/band_writer.h"
 #include "render/app/data_path.h"
 #include "render/app/drawn_surface.h"
 #include "render/app/earth_store.h"
+#include "render/app/globe_looks.h"
 #include "render/app/imagery.h"
 #include "render/app/part_mesh.h"
 #include "render/app/steps.h"
 #include "render/gl/framebuffer.h"
-#include "render/passes/overlay.h"
-#include "render/passes/sky.h"
-#include "render/passes/terrain.h"
 
 namespace render {
 
@@ -28,8 +26,6 @@ namespace {
 using planet::wgs84;
 
 constexpr int part_side = 2048;
-
-constexpr double highest_ground_m = 9000;
 
 /// Processor time of this thread.
 double thread_seconds() {
@@ -99,28 +95,12 @@ class Painter {
                 options_.imagery, options_.earth, index_, [&] { return earth_.get().heights; }, threads_,
                 options_.progress);
         });
-        steps_.time("textures", [&] {
-            day_ = upload_cube(imagery.day, GL_SRGB8_ALPHA8);
-            night_ = upload_cube(imagery.night, GL_SRGB8_ALPHA8);
-            relief_ = upload_cube(imagery.relief, GL_RGBA8_SNORM);
-        });
+        steps_.time("textures", [&] { looks_.upload(imagery); });
         const std::vector<Star> stars = steps_.time("stars", [] { return read_stars(data_file("stars.csv")); });
         const auto noise = noise_.get();
-        steps_.time("shaders", [&] {
-            terrain_.emplace();
-            sky_.emplace(stars, noise);
-            overlay_.emplace(OverlayPass::Show{.mesh = options_.shows(Overlay::mesh),
-                                               .levels = options_.shows(Overlay::levels),
-                                               .curve = options_.shows(Overlay::curve)});
-        });
-        auto [tables, view] = air.get();
-        view.uniforms.sky_detail.w = static_cast<float>(imagery.texel_m(wgs84.mean_radius()));
-        // The least ground distance and the smallest pixel there can be, at a corner.
-        const double clearance =
-            planet::height_from_ecef(wgs84, camera_.eye).m - highest_ground_m * options_.exaggeration;
-        from_afar_ = !needs_close_up(view.uniforms, std::max(clearance, 0.0),
-                                     1 / (camera_.focal_px * (1 + camera_.tan_corner() * camera_.tan_corner())));
-        sky_->set_view(tables, view, glm::mat3(planet::ecef_from_j2000(options_.time)));
+        steps_.time("shaders", [&] { looks_.link(stars, noise, overlays_of(options_)); });
+        const auto [tables, view] = air.get();
+        looks_.set_sky(tables, view, options_.time);
         set_reversed_depth();
     }
 
@@ -135,14 +115,14 @@ class Painter {
         const planet::Segments& segments = mesh.segments;
         begin_mesh(i + 1);
         steps_.time("upload", [&] {
-            terrain_->upload(segments, mesh.patches.layers());
-            overlay_->upload(segments);
+            looks_.terrain().upload(segments, mesh.patches.layers());
+            looks_.overlay().upload(segments, mesher_.tiles());
             patch_texture_ = mesh.patches.upload();
         });
         report_.triangles += segments.leaf_count();
         report_.vertices += segments.vertex_count();
         report_.strip_indices += segments.index_count();
-        report_.sent_bytes += terrain_->sent_bytes();
+        report_.sent_bytes += looks_.terrain().sent_bytes();
         report_.deviation_max_m = std::max(report_.deviation_max_m, mesh.deviation_max_m);
         report_.pixel_deviation_max = std::max(report_.pixel_deviation_max, mesh.pixel_deviation_max);
     }
@@ -151,21 +131,14 @@ class Painter {
         std::vector<std::uint8_t> pixels;
         steps_.time("draw", [&] {
             const int samples = options_.samples > 0 ? options_.samples
-                                : from_afar_         ? 1
-                                                     : std::min(4, context_.limits().samples);
+                                : looks_.from_afar(camera_, options_.exaggeration)
+                                    ? 1
+                                    : std::min(4, context_.limits().samples);
             if (!target_ || target_.width() != part.width || target_.height() != part.height)
                 target_ = Framebuffer(part.width, part.height, {.color_format = GL_RGBA8, .samples = samples});
             target_.bind();
             target_.clear(0, 0, 0, 1);
-            sky_->bind(camera_, part);
-            day_.bind(4);
-            night_.bind(5);
-            relief_.bind(6);
-            patch_texture_.bind(7);
-            const double stretch = (wgs84.a / wgs84.b) * (wgs84.a / wgs84.b);
-            terrain_->draw(camera_, part, {options_.exaggeration, stretch, patch_range, from_afar_});
-            overlay_->draw(camera_, part);
-            sky_->draw(camera_, part);
+            looks_.draw({camera_, part, options_.exaggeration, patch_texture_});
             pixels = target_.read_rgba8();
         });
         for (int y = 0; y < part.height; ++y) {
@@ -188,6 +161,18 @@ class Painter {
         report_.backend = backend_name(context_.backend());
         report_.gl_version = context_.gl_version();
         report_.gl_renderer = context_.gl_renderer();
+        pick_centre();
+    }
+
+    void pick_centre() {
+        const glm::dvec3 forward = -glm::dvec3(glm::transpose(camera_.view_from_ecef)[2]);
+        const planet::SplitTest& test = meshes_[(parts_.size() - 1) & 1].view.test;  // the same for all parts
+        const auto picked = planet::pick(mesher_.tiles(), test, camera_.eye, forward);
+        if (!picked) return;
+        const glm::dvec3 normal = planet::normal_from_ecef(wgs84, picked->position);
+        planet::SurfaceCursor cursor = surface_.field.cursor();
+        report_.centre = {planet::geodetic_from_normal(normal), planet::ground_at(cursor, normal), picked->distance,
+                          picked->deviation};
     }
 
     /// What a frame costs once the last part is drawn: the same view again, and the eye a hundredth of its height ahead.
@@ -200,8 +185,8 @@ class Painter {
             const double start = thread_seconds();
             mesh.segments.update(mesher_.tiles(), mesh.view);
             const double seconds = thread_seconds() - start;
-            terrain_->upload(mesh.segments, std::vector<std::int32_t>(mesh.segments.segments().size(), -1));
-            return FrameCost{seconds, terrain_->sent_bytes()};
+            looks_.terrain().upload(mesh.segments, std::vector<std::int32_t>(mesh.segments.segments().size(), -1));
+            return FrameCost{seconds, looks_.terrain().sent_bytes()};
         };
         for (const glm::dvec3& eye : {ahead, camera_.eye}) frame(eye);  // tiles are loaded now
         report_.at_rest = frame(camera_.eye);
@@ -220,11 +205,8 @@ class Painter {
     DrawnSurface surface_;
     Camera camera_;
     PartMesher mesher_;
-    Texture day_, night_, relief_, patch_texture_;
-    bool from_afar_ = false;
-    std::optional<TerrainPass> terrain_;
-    std::optional<SkyPass> sky_;
-    std::optional<OverlayPass> overlay_;
+    GlobeLooks looks_;
+    Texture patch_texture_;
     Framebuffer target_;
     std::vector<PicturePart> parts_;
     PartMesh meshes_[2];      ///< by the last bit of the part's number

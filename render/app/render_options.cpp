@@ -10,22 +10,16 @@ namespace {
 
 using Where = std::string_view;
 
-struct OverlayName {
-    std::string_view name;
-    Overlay overlay;
-};
-constexpr OverlayName overlays[] = {{"mesh", Overlay::mesh}, {"levels", Overlay::levels}, {"curve", Overlay::curve}};
-
-std::vector<std::string_view> overlay_names() {
+std::vector<std::string_view> names_of_overlays() {
     std::vector<std::string_view> names;
-    for (const auto& each : overlays) names.push_back(each.name);
+    for (const auto& each : overlay_names) names.push_back(each.name);
     return names;
 }
 
 std::uint32_t overlays_from_text(Where where, const std::string& text) {
     std::uint32_t bits = 0;
-    for (const std::size_t index : parse_choices(where, text, overlay_names()))
-        bits |= static_cast<std::uint32_t>(overlays[index].overlay);
+    for (const std::size_t index : parse_choices(where, text, names_of_overlays()))
+        bits |= static_cast<std::uint32_t>(overlay_names[index].overlay);
     return bits;
 }
 
@@ -66,6 +60,36 @@ void add_files(CLI::App& command, const std::string& name, const std::string& wh
         ->type_name("FILE");
 }
 
+void add_drawing_options(CLI::App& command, RenderOptions& o) {
+    add_value(command, "--exaggeration", "FACTOR", "Of heights, 0 to 100 [1]",
+              [&](Where where, const std::string& text) {
+                  o.exaggeration = parse_number(where, text, {0, 100});
+              });
+    add_value(command, "--max-pixel-deviation", "PIXELS", "Certified bound on what the mesh may be off [0.5]",
+              [&](Where where, const std::string& text) {
+                  o.max_pixel_deviation = parse_number(where, text, {0.05, 100}, "pixels");
+              });
+    add_value(command, "--max-triangles", "COUNT", "The best picture with at most so many triangles",
+              [&](Where where, const std::string& text) {
+                  o.max_triangles = static_cast<std::size_t>(parse_whole(where, text, 1, 2'000'000'000));
+              });
+    add_value(command, "--memory", "BYTES", "Limit of elevation tiles kept, e.g. 512MiB [1GiB]",
+              [&](Where where, const std::string& text) {
+                  o.memory_bytes = parse_memory(where, text, std::size_t{1} << 20, std::size_t{1} << 40);
+              });
+    add_value(command, "--show", "LIST", "Draw on top: mesh,levels,curve,segments,deviations,graticule",
+              [&](Where where, const std::string& text) { o.show = overlays_from_text(where, text); });
+    add_value(command, "--samples", "COUNT", "Samples a pixel: 1, 2, 4, 8 [4 near the ground, 1 from afar]",
+              [&](Where where, const std::string& text) {
+                  o.samples = 1 << parse_choice(where, text, {"1", "2", "4", "8"});
+              });
+    add_value(
+        command, "--threads", "COUNT", "1 to 256; 0: as many as there are processors [0]",
+        [&](Where where, const std::string& text) { o.threads = static_cast<int>(parse_whole(where, text, 0, 256)); });
+}
+
+}  // namespace
+
 void add_view_options(CLI::App& command, RenderOptions& o) {
     add_value(command, "--at", "LAT,LON", "The place, degrees (without it: the whole globe)",
               [&](Where where, const std::string& text) { o.at = parse_place(where, text); });
@@ -96,40 +120,6 @@ void add_view_options(CLI::App& command, RenderOptions& o) {
               [&](Where where, const std::string& text) { o.time = planet::utc_from_iso8601(text, where); });
 }
 
-void add_drawing_options(CLI::App& command, RenderOptions& o) {
-    add_value(command, "--exaggeration", "FACTOR", "Of heights, 0 to 100 [1]",
-              [&](Where where, const std::string& text) {
-                  o.exaggeration = parse_number(where, text, {0, 100});
-              });
-    add_value(command, "--max-pixel-deviation", "PIXELS", "Certified bound on what the mesh may be off [0.5]",
-              [&](Where where, const std::string& text) {
-                  o.max_pixel_deviation = parse_number(where, text, {0.05, 100}, "pixels");
-              });
-    add_value(command, "--max-triangles", "COUNT", "The best picture with at most so many triangles",
-              [&](Where where, const std::string& text) {
-                  o.max_triangles = static_cast<std::size_t>(parse_whole(where, text, 1, 2'000'000'000));
-              });
-    add_value(command, "--memory", "BYTES", "Limit of elevation tiles kept, e.g. 512MiB [1GiB]",
-              [&](Where where, const std::string& text) {
-                  o.memory_bytes = parse_memory(where, text, std::size_t{1} << 20, std::size_t{1} << 40);
-              });
-    add_value(command, "--show", "LIST", "Draw on top: mesh,levels,curve",
-              [&](Where where, const std::string& text) { o.show = overlays_from_text(where, text); });
-    add_value(command, "--samples", "COUNT", "Samples a pixel: 1, 2, 4, 8 [4 near the ground, 1 from afar]",
-              [&](Where where, const std::string& text) {
-                  o.samples = 1 << parse_choice(where, text, {"1", "2", "4", "8"});
-              });
-    add_value(command, "--backend", "NAME", "auto, egl, egl-device, egl-surfaceless or osmesa [auto]",
-              [&](Where where, const std::string& text) {
-                  o.backend = backends[parse_choice(where, text, names_of_backends())];
-              });
-    add_value(
-        command, "--threads", "COUNT", "1 to 256; 0: as many as there are processors [0]",
-        [&](Where where, const std::string& text) { o.threads = static_cast<int>(parse_whole(where, text, 0, 256)); });
-}
-
-}  // namespace
-
 void add_elevation_options(CLI::App& command, EarthSources& sources) {
     add_files(command, "--elevation", "Rasters of heights over the default Earth, the last on top", sources.elevation);
     add_value(
@@ -141,14 +131,22 @@ void add_elevation_options(CLI::App& command, EarthSources& sources) {
         ->needs("--elevation");
 }
 
-void add_picture_options(CLI::App& command, RenderOptions& o) {
-    add_view_options(command, o);
+void add_look_options(CLI::App& command, RenderOptions& o) {
     add_drawing_options(command, o);
     add_elevation_options(command, o.earth);
     add_value(command, "--store", "FILE", "A baked store instead of the default Earth",
               [&](Where where, const std::string& text) { o.store = path_from_text(where, text); })
         ->excludes("--elevation");
     add_files(command, "--imagery", "Pictures of the whole globe, the last on top, instead of the default", o.imagery);
+}
+
+void add_picture_options(CLI::App& command, RenderOptions& o) {
+    add_view_options(command, o);
+    add_look_options(command, o);
+    add_value(command, "--backend", "NAME", "auto, egl, egl-device, egl-surfaceless or osmesa [auto]",
+              [&](Where where, const std::string& text) {
+                  o.backend = backends[parse_choice(where, text, names_of_backends())];
+              });
     add_value(command, "-o,--output", "FILE", "The picture: .png, .jpg, .tif or .exr [globe.png]",
               [&](Where where, const std::string& text) { o.output = picture_path_from_text(where, text); });
 }

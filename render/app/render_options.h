@@ -26,10 +26,22 @@ namespace render {
 
 /// What --show adds to a picture. The bits of RenderOptions::show.
 enum class Overlay : std::uint32_t {
-    mesh = 1,    ///< the sides of the triangles
-    levels = 2,  ///< a colour for each level
-    curve = 4,   ///< the Sierpinski curve through the triangles
+    mesh = 1,         ///< the sides of the triangles
+    levels = 2,       ///< a colour for each level
+    curve = 4,        ///< the Sierpinski curve through the triangles
+    segments = 8,     ///< a colour for each segment: what is drawn and kept as one
+    deviations = 16,  ///< a colour for how far a triangle is at most from the finest surface
+    graticule = 32,   ///< parallels and meridians
 };
+
+/// As --show names them.
+struct OverlayName {
+    std::string_view name;
+    Overlay overlay;
+};
+inline constexpr OverlayName overlay_names[] = {
+    {"mesh", Overlay::mesh},         {"levels", Overlay::levels},         {"curve", Overlay::curve},
+    {"segments", Overlay::segments}, {"deviations", Overlay::deviations}, {"graticule", Overlay::graticule}};
 
 struct RenderOptions {
     /// The place the picture is about, h = 0. What "ground" means below is the drawn surface there: the terrain with
@@ -79,6 +91,12 @@ struct RenderOptions {
 /// Adds --elevation and --elevation-datum. What the options are put into must live as long as the parser. Values are
 /// checked while parsing (planet::Error, bad_usage).
 void add_elevation_options(CLI::App& command, EarthSources& sources);
+
+/// Adds --at to --time.
+void add_view_options(CLI::App& command, RenderOptions& options);
+
+/// Adds what is drawn and how well, and the sources: all the others but --output and --json.
+void add_look_options(CLI::App& command, RenderOptions& options);
 
 /// Adds all options of a picture but --json.
 void add_picture_options(CLI::App& command, RenderOptions& options);

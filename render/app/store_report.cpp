@@ -50,8 +50,7 @@ void add_overview(Rows& rows, const planet::StoreMetadata& m, const StoreSummary
 void print_levels(const StoreSummary& summary, const planet::StoreMetadata& m) {
     Rows rows{{"tiles from level", "tiles", "vertices"}};
     for (const StoreLevel& each : summary.levels)
-        rows.push_back(
-            {std::to_string(each.level), grouped(each.tiles), each.vertices ? grouped(*each.vertices) : "not counted"});
+        rows.push_back({std::to_string(each.level), grouped(each.tiles), each.vertices ? grouped(*each.vertices) : ""});
     rows.push_back({"all", grouped(summary.tiles), m.complete ? grouped(m.vertices) : ""});
     print_table(std::cout, rows);
 }

@@ -16,8 +16,6 @@ using planet::degrees;
 using planet::LocationCode;
 using Codes = std::vector<LocationCode>;  // ascending, all of one level
 
-constexpr std::size_t most_tiles_read = 10'000;
-
 /// Which degrees of longitude an area takes up, and where it ends within them.
 class Longitudes {
   public:
@@ -80,7 +78,7 @@ class AreaBox {
 
 /// Tiles hang together where the cells some levels above them share a side: a gap of less than such a cell is none.
 std::vector<StoreArea> areas_of(const Codes& tiles) {
-    const int level = tiles.front().bisection_level(), coarse = level - 6;
+    const int level = tiles.front().bisection_level(), coarse = std::max(level - 6, 0);
     Codes cells;
     for (const LocationCode tile : tiles)
         if (cells.empty() || cells.back() != tile.ancestor(coarse)) cells.push_back(tile.ancestor(coarse));
@@ -111,56 +109,17 @@ std::vector<StoreArea> areas_of(const Codes& tiles) {
     return areas;
 }
 
-/// Of which the tiles below are not among `finer`.
-Codes leaves_of(const Codes& tiles, const Codes& finer) {
-    Codes leaves;
-    for (const LocationCode tile : tiles) {
-        const int level = tile.bisection_level() + planet::tile_levels;
-        const auto below = level > planet::max_bisection_level
-                               ? finer.end()
-                               : std::lower_bound(finer.begin(), finer.end(), LocationCode(tile.first_at(level)));
-        if (below == finer.end() || !tile.contains(*below)) leaves.push_back(tile);
-    }
-    return leaves;
-}
-
-/// Inner tiles have all their vertices. Leaves are read, but for those of the level that has the most: they have what is
-/// left of the total.
-void count_vertices(const planet::ElevationStore& store, const std::map<int, Codes>& by_level, StoreSummary& summary) {
-    if (!store.metadata().complete) return;
-    std::vector<Codes> leaves;
-    for (const StoreLevel& each : summary.levels) {
-        const auto finer = by_level.find(each.level + planet::tile_levels);
-        leaves.push_back(leaves_of(by_level.at(each.level), finer == by_level.end() ? Codes{} : finer->second));
-    }
-    const auto fewer = [](const Codes& p, const Codes& q) { return p.size() < q.size(); };
-    const auto most = std::max_element(leaves.begin(), leaves.end(), fewer);
-    std::uint64_t known = 0;
-    bool all_known = true;
-    for (std::size_t i = 0; i < leaves.size(); ++i) {
-        StoreLevel& level = summary.levels[i];
-        if (&leaves[i] == &*most) continue;
-        if (leaves[i].size() > most_tiles_read) {
-            all_known = false;
-            continue;
-        }
-        level.vertices = (level.tiles - leaves[i].size()) * planet::tile_layout().vertex_count[planet::tile_levels];
-        for (const LocationCode leaf : leaves[i])
-            if (const auto tile = store.read(leaf)) *level.vertices += tile->height.size();
-        known += *level.vertices;
-    }
-    if (all_known)
-        summary.levels[static_cast<std::size_t>(most - leaves.begin())].vertices = store.metadata().vertices - known;
-}
-
 }  // namespace
 
 StoreSummary summarize(const planet::ElevationStore& store) {
     std::map<int, Codes> by_level;
+    const std::map<int, std::uint64_t>& vertices = store.metadata().vertices_by_level;
     StoreSummary summary;
     for (const LocationCode tile : store.tiles()) by_level[tile.bisection_level()].push_back(tile);
     for (const auto& [level, tiles] : by_level) {
         summary.levels.push_back({level, tiles.size()});
+        if (const auto counted = vertices.find(level); store.metadata().complete && counted != vertices.end())
+            summary.levels.back().vertices = counted->second;
         summary.tiles += tiles.size();
         const bool whole_planet = tiles.size() == std::uint64_t{planet::face_count} << level;
         if (level == 0 || whole_planet) continue;
@@ -170,7 +129,6 @@ StoreSummary summarize(const planet::ElevationStore& store) {
     const std::uint64_t planned = store.metadata().tiles;
     if (!store.metadata().complete)
         summary.done = planned > 0 ? static_cast<double>(summary.tiles) / static_cast<double>(planned) : 0;
-    count_vertices(store, by_level, summary);
     for (int face = 0; face < planet::face_count; ++face) {
         const auto tile = store.read(LocationCode::face_root(face));
         if (!tile) continue;

@@ -12,9 +12,9 @@ namespace render {
 
 /// Tiles that begin at one bisection level.
 struct StoreLevel {
-    int level = 0;  ///< of the tiles' roots: 0, 12, 24 ...
+    int level = 0;  ///< of the tiles' roots
     std::uint64_t tiles = 0;
-    std::optional<std::uint64_t> vertices{};  ///< nothing where counting would mean reading most of a large store
+    std::optional<std::uint64_t> vertices{};  ///< nothing if the store does not say: version 2, or not complete
 };
 
 /// A region that has tiles of its own at a level that does not cover the planet. Degrees; west > east across the

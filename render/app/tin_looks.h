@@ -14,13 +14,13 @@ namespace render {
 /// Of unit length, by vertex: those of the triangles around it, by their areas.
 std::vector<glm::vec3> normals_of(const planet::SurfaceMesh& mesh);
 
-/// Of the ground at samples, from those up to four away: the same bits from any window that has them.
+/// Of the ground at samples, from those up to ground_reach away: the same bits from any window that has them.
 /// @param frame of the grid's window
 std::vector<glm::vec3> ground_normals(const planet::HeightGrid& grid, const planet::RasterFrame& frame,
                                       const std::vector<glm::ivec2>& samples);
 
 /// How far away samples tell ground_normals().
-inline constexpr int ground_reach = 4;
+inline constexpr int ground_reach = 8;
 
 /// Where samples lie in a picture that covers a raster from edge to edge of its outer pixels, north (or what has the larger
 /// y) up: in shares of its width and height from the top left.

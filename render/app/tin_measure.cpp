@@ -1,5 +1,7 @@
 #include "render/app/tin_measure.h"
 
+#include "render/app/tin_gpu_measure.h"
+
 namespace render {
 
 std::unique_ptr<planet::TinMeasure> make_tin_measure(const TinMeasureChoice& choice, const planet::HeightGrid& grid) {
@@ -8,6 +10,8 @@ std::unique_ptr<planet::TinMeasure> make_tin_measure(const TinMeasureChoice& cho
             return planet::make_measure(planet::TinMetric::regional, grid);
         case TinMetricName::rms:
             return planet::make_measure(planet::TinMetric::rms, grid);
+        case TinMetricName::gpu:
+            return make_gpu_measure(grid);
         case TinMetricName::local:
             break;
     }

@@ -8,7 +8,7 @@
 
 namespace render {
 
-enum class TinMetricName { local, regional, rms };
+enum class TinMetricName { local, regional, rms, gpu };
 enum class TinLocateName { automatic, cells, naive };
 
 struct TinMeasureChoice {
@@ -22,6 +22,7 @@ struct TinMeasureChoice {
 };
 
 /// @param grid stays as long as the measure @return null for a plain choice
+/// Throws planet::Error(no_graphics) for gpu without a usable context.
 std::unique_ptr<planet::TinMeasure> make_tin_measure(const TinMeasureChoice& choice, const planet::HeightGrid& grid);
 
 }  // namespace render

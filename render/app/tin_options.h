@@ -11,6 +11,7 @@
 #include "planet/tin/tiled_tin.h"
 #include "render/app/report.h"
 #include "render/app/tin_measure.h"
+#include "render/app/tin_picture.h"
 
 namespace render {
 
@@ -33,6 +34,8 @@ struct TinCommand {
 
     std::optional<std::filesystem::path> output{};  ///< a file; with tiles a folder
     std::optional<std::filesystem::path> error_grid{}, drape{};
+    std::optional<std::filesystem::path> picture{};  ///< of steps towards it
+    std::vector<std::size_t> stages = paper_stages;  ///< triangles, of the picture's panels
     std::string json;
 };
 

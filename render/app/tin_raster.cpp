@@ -1,5 +1,7 @@
 // octaglobe tin DEM: one mesh.
 
+#include <malloc.h>
+
 #include <iostream>
 
 #include "planet/elevation/raster_writer.h"
@@ -9,6 +11,7 @@
 #include "render/app/figures.h"
 #include "render/app/mesh_output.h"
 #include "render/app/progress.h"
+#include "render/app/tin_gpu_measure.h"
 #include "render/app/tin_looks.h"
 #include "render/app/tin_source.h"
 #include "render/app/tin_written.h"
@@ -34,6 +37,7 @@ class TinMaker {
           error_grid_(open_error_grid()),
           heights_(read()) {
         if (command.drape) drape_.emplace(*command.drape);
+        if (command.picture) const OutputFile writable("--picture", *command.picture);
     }
 
     void run() {
@@ -43,6 +47,8 @@ class TinMaker {
         tin.surface.strip = {};  // memory for writing and reading again
         tin.deviation.by_triangle = {};
         tin.deviation.farthest = {};
+        draw_steps();
+        ::malloc_trim(0);
         write(tin);
         tell(tin);
     }
@@ -79,15 +85,17 @@ class TinMaker {
     planet::TinResult make() {
         progress_.update("triangulating", std::nan(""));
         if (!curves(frame_)) return make_over(heights_, 1);
+        const planet::RasterFrame tangent = source_.tangent_frame();
         std::optional<HeightGrid> over_plane;
         {
             const auto step = report_.step("place");
-            over_plane.emplace(planet::heights_above_tangent_plane(heights_, source_.tangent_frame()));
+            over_plane.emplace(planet::heights_above_tangent_plane(heights_, tangent));
         }
-        return make_over(*over_plane, command_.exaggeration);
+        const double share = share_above_plane(tangent, {heights_.width(), heights_.height()});
+        return make_over(*over_plane, share * command_.exaggeration);
     }
 
-    /// @param scale of the grid's heights
+    /// @param scale of the tolerance
     planet::TinResult make_over(const HeightGrid& grid, double scale) {
         planet::TinOptions how;
         const double bound = command_.max_deviation.value_or(0);
@@ -97,6 +105,10 @@ class TinMaker {
         how.features = features_;
         const std::unique_ptr<planet::TinMeasure> measure = make_tin_measure(command_.measure, grid);
         how.measure = measure.get();
+        if (const auto* gpu = dynamic_cast<const GpuMeasure*>(measure.get())) {
+            report_.set("depth_step_m", gpu->depth_step());
+            report_.set("gl_renderer", gpu->context().gl_renderer());
+        }
         planet::TinResult result = planet::make_tin(grid, how);
         for (const auto& [name, seconds] : result.seconds) report_.add_seconds(name, seconds);
         return result;
@@ -113,6 +125,7 @@ class TinMaker {
 
     WrittenTin certified(planet::TinResult made) {
         const auto step = report_.step("certify");
+        ::malloc_trim(0);  // what many threads have made tiles in
         progress_.update("measuring", std::nan(""));
         features_found_ = made.features;
         end_ = made.end;
@@ -169,6 +182,19 @@ class TinMaker {
         if (error_grid_) error_grid_->finish();
         if (command_.error_grid) report_.set("error_grid", command_.error_grid->string());
         if (file_) file_->commit();
+    }
+
+    void draw_steps() {
+        if (!command_.picture) return;
+        const auto step = report_.step("picture");
+        progress_.update("drawing", std::nan(""));
+        const std::unique_ptr<planet::TinMeasure> measure = make_tin_measure(command_.measure, heights_);
+        planet::TinOptions how;
+        how.features = features_;
+        how.measure = measure.get();
+        const planet::RasterFrame plan = source_.frame(MeshFrame::source, MeshFormat::ply);
+        write_tin_steps(heights_, metres_per_sample(plan), how, command_.stages, command_.picture->string());
+        report_.set("picture", command_.picture->string());
     }
 
     void fill_report(const WrittenTin& tin) {

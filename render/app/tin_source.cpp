@@ -21,8 +21,8 @@ using planet::MeshFrame;
 /// 4 GB of heights.
 constexpr std::size_t most_samples = std::size_t{1} << 30;
 
-/// What GDAL keeps of a file's blocks, at least.
-constexpr std::size_t least_cache = std::size_t{32} << 20;
+/// What GDAL keeps of a file's blocks.
+constexpr std::size_t least_cache = std::size_t{32} << 20, most_cache = std::size_t{512} << 20;
 
 planet::RasterOptions raster_options() {
     planet::RasterOptions how;
@@ -30,7 +30,13 @@ planet::RasterOptions raster_options() {
     return how;
 }
 
-std::unique_ptr<const planet::RasterMosaic> open_mosaic(const std::vector<std::string>& patterns) {
+/// Of compressed files a row of tiles is kept, so that it need not be decoded again for each.
+std::size_t cache_for(const planet::MosaicPart& part, int tile) {
+    constexpr int columns = 260;  // that a part's decoded_bytes are for
+    return std::min(most_cache, part.decoded_bytes * static_cast<std::size_t>(1 + tile / columns));
+}
+
+std::unique_ptr<const planet::RasterMosaic> open_mosaic(const std::vector<std::string>& patterns, int tile) {
     std::vector<planet::MosaicPart> parts;
     std::size_t cache = least_cache;
     for (const std::string& pattern : patterns)
@@ -39,7 +45,7 @@ std::unique_ptr<const planet::RasterMosaic> open_mosaic(const std::vector<std::s
             if (!parts.empty() && !planet::place_on_grid_of(parts.front(), part))
                 throw Error(Fault::bad_data, file, "is not on the grid of " + parts.front().path,
                             "rasters of one CRS and one sample distance, a whole number of samples apart");
-            cache = std::max(cache, part.decoded_bytes);
+            cache = std::max(cache, cache_for(part, tile));
             parts.push_back(std::move(part));
         }
     planet::raster_driver().limit_cache(cache);
@@ -61,7 +67,9 @@ bool is_nowhere(const glm::dvec3& p) {
 }  // namespace
 
 TinSource::TinSource(const TinCommand& command)
-    : command_(command), mosaic_(open_mosaic(command.sources)), raster_(without_samples(mosaic_->header())) {
+    : command_(command),
+      mosaic_(open_mosaic(command.sources, command.tile)),
+      raster_(without_samples(mosaic_->header())) {
     if (raster_->width < 2 || raster_->height < 2)
         throw Error(Fault::bad_data, raster_->name,
                     std::to_string(raster_->width) + "x" + std::to_string(raster_->height) + " samples have no area",
@@ -140,6 +148,20 @@ planet::TinFeatures TinSource::features() const {
 
 std::vector<glm::ivec2> TinSource::pole_samples() const {
     return samples_at_poles(*raster_);
+}
+
+double share_above_plane(const planet::RasterFrame& tangent, glm::ivec2 size) {
+    const glm::dvec2 last(size - 1);
+    std::vector<glm::dvec2> at;
+    for (const double x : {0.0, 0.5, 1.0})
+        for (const double y : {0.0, 0.5, 1.0}) at.push_back(last * glm::dvec2(x, y));
+    const std::vector<double> heights(at.size());
+    std::vector<glm::dvec3> placed(at.size());
+    std::vector<glm::vec3> up(at.size());
+    tangent.place(at, heights, placed, up);
+    double least = 1;
+    for (const glm::vec3& u : up) least = std::min(least, static_cast<double>(u.z));
+    return std::max(0.94, least - 1e-6);
 }
 
 PlacedBox box_of_window(const planet::RasterFrame& frame, glm::ivec2 first, glm::ivec2 last, double lowest,

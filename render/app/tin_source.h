@@ -56,6 +56,10 @@ inline bool curves(const planet::RasterFrame& frame) {
     return !frame.affine() && (kind == planet::MeshFrame::enu || kind == planet::MeshFrame::ecef);
 }
 
+/// What heights above the plane of an enu frame must be kept within, of what is measured along the verticals of a raster:
+/// the cosine of how far these lean, or 0.94 where that is less, and mending has to see to the rest.
+double share_above_plane(const planet::RasterFrame& tangent, glm::ivec2 size);
+
 /// About where a window of a raster lies in a frame: a box.
 struct PlacedBox {
     glm::dvec3 low, high;

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <mutex>
 #include <set>
 
@@ -55,7 +56,10 @@ class TileMaker {
           end_(tiling_.width() - 1, tiling_.height() - 1),
           map_(*source_.raster()),
           figures_(tiling_.count()) {
-        if (curves(frame_)) tangent_.emplace(source_.tangent_frame());
+        if (curves(frame_)) {
+            tangent_.emplace(source_.tangent_frame());
+            scale_ = command.exaggeration * share_above_plane(*tangent_, {tiling_.width(), tiling_.height()});
+        }
         if (command.error_grid)
             error_grid_ = std::make_unique<planet::RasterWriter>(command.error_grid->string(), *source_.raster());
         if (command.drape) drape_.emplace(*command.drape);
@@ -65,13 +69,15 @@ class TileMaker {
         survey();
         make_all();
         total();
-        if (error_grid_) error_grid_->finish();
+        finish_error_grid();
         folder_.commit();
         fill_report();
         tell();
     }
 
   private:
+    using Sample = std::pair<int, int>;  // row, column
+
     planet::TinTiling make_tiling() const {
         constexpr std::size_t most = 1'000'000;
         const planet::TinTiling tiling(source_.raster()->width, source_.raster()->height, command_.tile);
@@ -149,9 +155,9 @@ class TileMaker {
     }
 
     planet::TinMesh triangulate(const TileWindow& w) const {
-        const double scale = tangent_ ? command_.exaggeration : 1, bound = *command_.max_deviation;
+        const double bound = *command_.max_deviation;
         planet::TiledTinOptions how;
-        how.tolerance = scale * std::max(0.5 * bound, bound - rounding_);
+        how.tolerance = scale_ * std::max(0.5 * bound, bound - rounding_);
         how.quality = command_.quality;
         std::optional<HeightGrid> over_plane;
         if (tangent_) over_plane.emplace(planet::heights_above_tangent_plane(w.window, tangent_->window(w.first), 1));
@@ -249,8 +255,11 @@ class TileMaker {
         for (int y = w.low.y; y <= w.high.y; ++y)
             for (int x = w.low.x; x <= w.high.x; ++x, ++i) {
                 const double d = deviation.empty() ? std::nan("") : static_cast<double>(deviation[i]);
-                const bool inside = (x < w.high.x && y < w.high.y);
-                if (inside ? true : counts_here(tile, {x, y}, !std::isnan(d), w)) count({x, y}, d, w, figures);
+                const bool on_border = x == w.low.x || y == w.low.y || x == w.high.x || y == w.high.y;
+                if (on_border && !counts_here(tile, {x, y}, !std::isnan(d), w)) continue;
+                count({x, y}, d, w, figures);
+                const bool next_tiles = (x == w.high.x && x < end_.x) || (y == w.high.y && y < end_.y);
+                if (error_grid_ && next_tiles && !std::isnan(d)) keep_deviation({y, x}, deviation[i]);
             }
         write_deviations(w, deviation);
     }
@@ -271,6 +280,17 @@ class TileMaker {
             figures.squares += deviation * deviation;
         }
     }
+    /// Of a sample that the next tile has too, but no triangle at it.
+    void keep_deviation(Sample p, float deviation) {
+        const std::lock_guard lock(error_grid_mutex_);
+        kept_deviations_[p] = deviation;
+    }
+    void finish_error_grid() {
+        if (!error_grid_) return;
+        for (const auto& [p, deviation] : kept_deviations_)
+            error_grid_->write({p.second, p.first, 1, 1}, std::span(&deviation, 1));
+        error_grid_->finish();
+    }
     void write_deviations(const TileWindow& w, const std::vector<float>& deviation) {
         if (!error_grid_) return;
         const glm::ivec2 size = w.high - w.low + 1;
@@ -286,8 +306,6 @@ class TileMaker {
     }
 
     // ---- the tiling ----
-
-    using Sample = std::pair<int, int>;  // row, column
 
     std::vector<std::size_t> tiles_at(glm::ivec2 p) const {
         std::vector<std::size_t> tiles;
@@ -391,8 +409,10 @@ class TileMaker {
     std::optional<Drape> drape_;
     std::unique_ptr<planet::RasterWriter> error_grid_;
     std::mutex error_grid_mutex_;
+    std::map<Sample, float> kept_deviations_;
 
     double grid_step_ = 0, rounding_ = 0;
+    double scale_ = 1;           ///< of the tolerance, for heights above a plane
     std::set<Sample> inserted_;  ///< on borders; changes between passes only
     std::vector<TileFigures> figures_;
     TileFigures all_;

@@ -194,6 +194,27 @@ std::vector<std::size_t> parse_choices(std::string_view where, std::string_view 
     }
 }
 
+std::vector<std::size_t> parse_wholes(std::string_view where, std::string_view text, long low, long high) {
+    std::vector<std::size_t> numbers;
+    for (std::string_view rest = text;;) {
+        const auto comma = rest.find(',');
+        numbers.push_back(static_cast<std::size_t>(parse_whole(where, trimmed(rest.substr(0, comma)), low, high)));
+        if (comma == std::string_view::npos) return numbers;
+        rest.remove_prefix(comma + 1);
+    }
+}
+
+std::filesystem::path parse_picture_name(std::string_view where, std::string_view text) {
+    if (text.empty()) throw Error(Fault::bad_usage, where, "empty file name", "a path");
+    std::filesystem::path path = text;
+    std::string ending = path.extension().native();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff"})
+        if (ending == known) return path;
+    throw Error(Fault::bad_usage, where, shown(text) + " has no ending of a picture", ".png, .jpg or .tif");
+}
+
 std::string shown(std::string_view text) {
     constexpr std::size_t longest = 60;
     std::string line = "'";

@@ -4,6 +4,7 @@
 // be accepted. NaN, infinities, empty text and anything left over are refused. Blanks around a value are ignored.
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +55,12 @@ std::size_t parse_choice(std::string_view where, std::string_view text, const st
 /// Names separated by commas, each at most once; returns their indices in the order given.
 std::vector<std::size_t> parse_choices(std::string_view where, std::string_view text,
                                        const std::vector<std::string_view>& names);
+
+/// "50,150,250": whole numbers within the range, separated by commas.
+std::vector<std::size_t> parse_wholes(std::string_view where, std::string_view text, long low, long high);
+
+/// The path of a picture that can be written, by its ending.
+std::filesystem::path parse_picture_name(std::string_view where, std::string_view text);
 
 /// What the user wrote, fit for an error line: quoted, control characters and bytes beyond ASCII as '?', and cut after
 /// 60 characters.

@@ -164,6 +164,17 @@ Context Context::create(const ContextOptions& options) {
                         "EGL with a driver (libegl1 and libgl1-mesa-dri, or a GPU's own) or OSMesa (libosmesa6)");
 }
 
+Context Context::adopt(std::unique_ptr<NativeContext> native, bool debug) {
+    auto state = std::make_unique<State>();
+    state->native = std::move(native);
+    state->backend = BackendChoice::window;
+    std::string reason = state->make_current();
+    if (reason.empty()) reason = state->load();
+    if (!reason.empty()) throw planet::Error(planet::Fault::no_graphics, "window", reason, "OpenGL 4.5 core");
+    state->set_up(debug);
+    return Context(std::move(state));
+}
+
 Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Context::Context(Context&&) noexcept = default;
 Context& Context::operator=(Context&&) noexcept = default;
@@ -210,6 +221,8 @@ std::string_view backend_name(BackendChoice backend) {
             return "egl-surfaceless";
         case BackendChoice::osmesa:
             return "osmesa";
+        case BackendChoice::window:
+            return "window";
     }
     assert(false);
     return {};

@@ -21,12 +21,15 @@
 
 namespace render {
 
+class NativeContext;
+
 enum class BackendChoice {
     automatic,        ///< the first that works of the three below
     egl,              ///< the first that works of the two below
     egl_device,       ///< EGL_EXT_platform_device
     egl_surfaceless,  ///< EGL_MESA_platform_surfaceless
     osmesa,           ///< libOSMesa
+    window,           ///< of a Window, by adopt() only
 };
 
 /// The name at the command line: "auto", "egl", "egl-device", "egl-surfaceless", "osmesa".
@@ -48,6 +51,10 @@ class Context {
     /// Throws planet::Error: no_graphics, one line that names every way that was tried and why each failed; bad_usage
     /// if a device is asked of a way that has none.
     static Context create(const ContextOptions& options = {});
+
+    /// Takes over a context that was made elsewhere, such as a Window's, and makes it current on this thread as create()
+    /// does. Its backend is BackendChoice::window. Throws planet::Error (no_graphics).
+    static Context adopt(std::unique_ptr<NativeContext> native, bool debug = gl_checks);
 
     Context(Context&&) noexcept;
     Context& operator=(Context&&) noexcept;

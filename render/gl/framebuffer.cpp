@@ -86,6 +86,14 @@ void Framebuffer::resolve() const {
     check_gl("Framebuffer::resolve");
 }
 
+void Framebuffer::show_in_window(int width, int height) const {
+    resolve();
+    gl().BlitNamedFramebuffer(resolved_ ? resolved_.name() : draw_.name(), 0, 0, 0, width_, height_, 0, 0, width,
+                              height, GL_COLOR_BUFFER_BIT,
+                              width == width_ && height == height_ ? GL_NEAREST : GL_LINEAR);
+    check_gl("Framebuffer::show_in_window");
+}
+
 void Framebuffer::read_rgba8(std::span<std::uint8_t> pixels, std::size_t stride_pixels) const {
     const auto columns = static_cast<std::size_t>(width_), rows = static_cast<std::size_t>(height_);
     assert(stride_pixels >= columns && pixels.size() >= 4 * ((rows - 1) * stride_pixels + columns));

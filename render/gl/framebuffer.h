@@ -1,5 +1,5 @@
 #pragma once
-// Drawing goes to a framebuffer object, always: there is no window to draw to.
+// Drawing goes to a framebuffer object, always: mostly there is no window to draw to.
 
 #include <cstddef>
 #include <cstdint>
@@ -44,6 +44,9 @@ class Framebuffer {
     /// Averages the samples into color() and takes one of them into depth(). Nothing to do for one sample. The
     /// scissor test, if enabled, limits it.
     void resolve() const;
+
+    /// Draws the picture over a window's framebuffer (0), stretched to its size; resolves before.
+    void show_in_window(int width, int height) const;
 
     /// The picture as a texture, after resolve().
     const Texture& color() const noexcept { return color_; }

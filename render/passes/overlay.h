@@ -1,5 +1,6 @@
 #pragma once
-// The mesh itself as a picture: sides, levels in colour, the Sierpinski curve.
+// What lies on the terrain: the mesh itself (sides, the Sierpinski curve, colours by level, segment or deviation) and the
+// graticule.
 
 #include "planet/mesh/segments.h"
 #include "render/gl/buffer.h"
@@ -11,14 +12,14 @@ namespace render {
 class OverlayPass {
   public:
     struct Show {
-        bool mesh = false, levels = false, curve = false;
-        bool any() const { return mesh || levels || curve; }
+        bool mesh = false, levels = false, curve = false, segments = false, deviations = false, graticule = false;
+        bool any() const { return mesh || levels || curve || segments || deviations || graticule; }
     };
 
     explicit OverlayPass(Show show);
 
-    /// Three vertices a triangle: 60 bytes each triangle.
-    void upload(const planet::Segments& segments);
+    /// Three vertices a triangle: 60 bytes each triangle. @param tiles what the segments were built from
+    void upload(const planet::Segments& segments, const planet::TileSource& tiles);
 
     /// Blends over the terrain, which must have been drawn with the same camera.
     void draw(const Camera& camera, const PicturePart& part);
@@ -30,5 +31,8 @@ class OverlayPass {
     Buffer vertices_;
     GLsizei count_ = 0;
 };
+
+/// Between lines of the graticule, rad: such that some tens of pixels lie between them below the eye.
+double graticule_step(const Camera& camera);
 
 }  // namespace render

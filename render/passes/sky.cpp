@@ -66,7 +66,7 @@ void SkyPass::bind(const Camera& camera, const PicturePart& part) {
     noise_.bind(3);
 }
 
-void SkyPass::draw(const Camera& camera, const PicturePart& part) {
+void SkyPass::draw_air(const Camera& camera, const PicturePart& part) {
     gl().Enable(GL_DEPTH_TEST);
     gl().DepthFunc(GL_GEQUAL);
     gl().DepthMask(GL_FALSE);
@@ -74,18 +74,24 @@ void SkyPass::draw(const Camera& camera, const PicturePart& part) {
     gl().UniformMatrix4fv(0, 1, GL_FALSE, &camera.ecef_direction_from_clip(part)[0][0]);
     nothing_.bind();
     gl().DrawArrays(GL_TRIANGLES, 0, 3);
-    if (star_count_ > 0) {
-        stars_.use();
-        gl().UniformMatrix4fv(0, 1, GL_FALSE, &camera.clip_from_ecef(part)[0][0]);
-        gl().UniformMatrix3fv(1, 1, GL_FALSE, &ecef_from_inertial_[0][0]);
-        gl().Enable(GL_BLEND);
-        gl().BlendFunc(GL_ONE, GL_ONE);
-        gl().Enable(GL_PROGRAM_POINT_SIZE);
-        star_array_.bind();
-        gl().DrawArrays(GL_POINTS, 0, star_count_);
-        gl().Disable(GL_PROGRAM_POINT_SIZE);
-        gl().Disable(GL_BLEND);
-    }
+    gl().DepthMask(GL_TRUE);
+}
+
+void SkyPass::draw_stars(const Camera& camera, const PicturePart& part) {
+    if (star_count_ == 0) return;
+    gl().Enable(GL_DEPTH_TEST);
+    gl().DepthFunc(GL_GEQUAL);
+    gl().DepthMask(GL_FALSE);
+    stars_.use();
+    gl().UniformMatrix4fv(0, 1, GL_FALSE, &camera.clip_from_ecef(part)[0][0]);
+    gl().UniformMatrix3fv(1, 1, GL_FALSE, &ecef_from_inertial_[0][0]);
+    gl().Enable(GL_BLEND);
+    gl().BlendFunc(GL_ONE, GL_ONE);
+    gl().Enable(GL_PROGRAM_POINT_SIZE);
+    star_array_.bind();
+    gl().DrawArrays(GL_POINTS, 0, star_count_);
+    gl().Disable(GL_PROGRAM_POINT_SIZE);
+    gl().Disable(GL_BLEND);
     gl().DepthMask(GL_TRUE);
 }
 

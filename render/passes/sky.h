@@ -24,7 +24,13 @@ class SkyPass {
     void bind(const Camera& camera, const PicturePart& part);
 
     /// Draws sky and stars where nothing nearer was drawn: after the terrain.
-    void draw(const Camera& camera, const PicturePart& part);
+    void draw(const Camera& camera, const PicturePart& part) {
+        draw_air(camera, part);
+        draw_stars(camera, part);
+    }
+    /// One after the other: stars add to what is there.
+    void draw_air(const Camera& camera, const PicturePart& part);
+    void draw_stars(const Camera& camera, const PicturePart& part);
 
   private:
     Program sky_, stars_;

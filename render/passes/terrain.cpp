@@ -61,7 +61,7 @@ Attribute layer_attribute() {
 std::array<Attribute, 2> morph_attributes() {
     using planet::MorphVertex;
     return {{{.location = 5, .components = 3, .offset = offsetof(MorphVertex, x)},
-             {.location = 6, .components = 2, .offset = offsetof(MorphVertex, deviation)}}};
+             {.location = 6, .components = 3, .offset = offsetof(MorphVertex, deviation)}}};
 }
 
 bool FollowingBuffer::make_room(std::size_t bytes) {

@@ -81,6 +81,20 @@ void halve(const std::int16_t* fine, int n, std::int16_t* coarse, int m) {
 
 }  // namespace
 
+std::vector<std::vector<std::int16_t>> make_relief_patch(planet::LocationCode patch, const PatchSurface& surface,
+                                                         double radius_m) {
+    std::vector<std::vector<std::int16_t>> levels(static_cast<std::size_t>(mip_levels(patch_side, patch_side)));
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+        const int side = patch_side >> l;
+        levels[l].resize(static_cast<std::size_t>(side * side) * 4);
+        if (l == 0)
+            make_patch(patch, surface, radius_m, levels[0].data());
+        else
+            halve(levels[l - 1].data(), patch_side >> (l - 1), levels[l].data(), side);
+    }
+    return levels;
+}
+
 void ReliefPatches::build(const planet::Segments& segments, const PatchSurface& surface, double radius_m, int threads) {
     layers_.clear();
     std::vector<planet::LocationCode> codes;

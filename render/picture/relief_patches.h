@@ -24,6 +24,10 @@ struct PatchSurface {
     std::function<double(const glm::dvec3&)> spacing;
 };
 
+/// The texels of one patch, RGBA16 SNORM, by mip level from the finest.
+std::vector<std::vector<std::int16_t>> make_relief_patch(planet::LocationCode patch, const PatchSurface& surface,
+                                                         double radius_m);
+
 class ReliefPatches {
   public:
     /// Makes the patches of all detailed segments. @param radius_m of the planet

@@ -10,13 +10,13 @@ uniform ivec3 eye_lo;  ///< of 2^-18 m, 0 .. 2^21 - 1
 
 #ifdef MORPH
 layout(location = 5) in vec3 to_side_middle;  ///< m
-layout(location = 6) in vec2 diamond;         ///< deviation, radius, m: the vertex comes at radius + K deviation
+layout(location = 6) in vec3 diamond;         ///< deviation, radius, m: the vertex comes at radius + K deviation; width, m
 uniform float morph_reach;                    ///< K
 
-/// morph_fraction() of the threshold over the distance: 0 where the vertex comes, 1 from there to 4/5 of that distance.
-float morph_fraction(float eye_distance) {
-    const float whole = 1.25;
-    float t = clamp(((diamond.y + morph_reach * diamond.x) / max(eye_distance, 0.001) - 1.0) / (whole - 1.0), 0.0, 1.0);
+/// arrival_fraction(): 0 where the vertex comes, 1 where the eye is nearer by the width.
+float arrival_fraction(float eye_distance) {
+    float inside = diamond.y + morph_reach * diamond.x - 0.5 - eye_distance;
+    float t = clamp(inside / max(diamond.z, 1.0e-6), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
 }
 #endif
@@ -29,7 +29,7 @@ vec3 view_from_grid() {
     ivec3 lo = ((grid_word & 2047) << 10 | low) - eye_lo;
     vec3 view = vec3(hi) * 8.0 + vec3(lo) * (1.0 / 262144.0);
 #ifdef MORPH
-    view += (1.0 - morph_fraction(length(view))) * to_side_middle;
+    view += (1.0 - arrival_fraction(length(view))) * to_side_middle;
 #endif
     return view;
 }

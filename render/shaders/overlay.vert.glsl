@@ -1,17 +1,19 @@
 #version 450 core
 #include "grid.glsl"
 
-layout(location = 2) in uint corner_and_level;  ///< corner 0..2 of its triangle in bits 0-1, bisection level above
+layout(location = 2) in uint traits;  ///< of its triangle: corner 0-1, level 2-7, colour of the segment 8-15, deviation 16-23
 
 uniform mat4 clip_from_ecef;
 
 out vec3 barycentric;
-flat out int level;
+out vec3 view;
+flat out uint of_triangle;
 invariant gl_Position;
 
 void main() {
-    gl_Position = clip_from_ecef * vec4(view_from_grid(), 1.0);
-    uint corner = corner_and_level & 3u;
+    view = view_from_grid();
+    gl_Position = clip_from_ecef * vec4(view, 1.0);
+    uint corner = traits & 3u;
     barycentric = vec3(corner == 0u, corner == 1u, corner == 2u);
-    level = int(corner_and_level >> 2);
+    of_triangle = traits >> 2;
 }

@@ -12,3 +12,4 @@ vec4 sky_sunlight;      // rgb: irradiance of the sun outside the air; w: wind s
 vec4 sky_detail;        // xyz: the eye's ecef position modulo 2^17 m; w: side of a texel of the imagery, m
 vec4 sky_exposure;      // x: exposure, y: radiance of a night-light value of 1, z: ambient radiance at night, w: seconds
 vec4 sky_picture;       // xy: pixel offset of this part in the whole picture, z: star scale, w: pixel angle, rad
+vec4 sky_near;          // xyz: the eye's ecef position modulo 2^7 m, to 8 micrometres; sky_detail's is good to 8 mm

@@ -16,7 +16,7 @@ struct SurfaceInput {
     vec3 night;           ///< linear colour 0..1 of the night lights
     float water;          ///< 0..1: part of the imagery's texel that is water
     float height;         ///< orthometric, m
-    float footprint;      ///< side of the pixel on the ground, m
+    float footprint;      ///< side of the pixel there, m, as if it were seen from straight above
 };
 
 float luminance(vec3 c) {
@@ -41,19 +41,26 @@ float magnified(float footprint) {
 }
 
 /// Noise at the planet-fixed point beside the eye, with the finest features at about two pixels whatever the distance:
-/// two octave bands, cross-faded by the logarithm of the footprint. rgb: gradient -1..1, a: value -1..1.
-vec4 detail_noise(vec3 view, float footprint) {
+/// two octave bands, cross-faded by the logarithm of the footprint. Mips come from the footprint too: where bands begin,
+/// the differences between pixels mean nothing, and showed as dashes. rgb: gradient -1..1, a: value -1..1.
+/// @param along the longer side of the pixel on the ground, m
+vec4 detail_noise(vec3 view, float footprint, float along) {
     float level = log2(clamp(footprint, 0.002f, 1024.0f)) + 1.0f;
     float scale = exp2(-floor(level)) / 64.0f;
-    vec3 p = (vec3(sky_detail) + view) * scale;
-    return mix(texture(noise_table, p), texture(noise_table, p * 0.5f), fract(level)) * 2.0f - vec4(1.0f);
+    // What repeats within 128 m takes the finer position, or millimetres of the eye would be centimetres of the noise.
+    vec3 p = ((level < 1.0f ? vec3(sky_near) : vec3(sky_detail)) + view) * scale;
+    // A texel is 2^floor(level) m, one to two footprints.
+    float lod = max(log2(max(along, 0.002f)) - floor(level), 0.0f);
+    vec4 finer = textureLod(noise_table, p, lod), coarser = textureLod(noise_table, p * 0.5f, max(lod - 1.0f, 0.0f));
+    return mix(finer, coarser, fract(level)) * 2.0f - vec4(1.0f);
 }
 
 /// Noise with features of `size` metres and three octaves below, as far as the footprint allows. @param size a power of two up
 /// to 2^15: its period, 4 sizes, then divides that of sky_detail, and the pattern stays where it is as the eye moves.
 /// rgb: gradient -1..1, a: value -1..1
 vec4 patch_noise(vec3 view, float size) {
-    return texture(noise_table, (vec3(sky_detail) + view) / (4.0f * size)) * 2.0f - vec4(1.0f);
+    vec3 eye_place = size < 64.0f ? vec3(sky_near) : vec3(sky_detail);
+    return texture(noise_table, (eye_place + view) / (4.0f * size)) * 2.0f - vec4(1.0f);
 }
 
 /// Heights in metres at which forest ends and snow stays, by |sine of the latitude|: straight lines through the
@@ -165,15 +172,18 @@ vec3 surface_radiance(SurfaceInput s) {
 #ifndef FROM_AFAR
     near = close_up(s.footprint);
     {
-        vec4 fine = detail_noise(s.view, s.footprint);
+        // On a slope seen at a grazing angle a pixel is long: what is finer than that would be dashes along crests.
+        SurfaceInput slanted = s;
+        slanted.footprint = s.footprint / max(dot(s.terrain_normal, to_eye), 0.08f);
+        vec4 fine = detail_noise(s.view, sqrt(s.footprint * slanted.footprint), slanted.footprint);
         float middle = patch_noise(s.view, 256.0f).w;
         float large = patch_noise(s.view, 2048.0f).w + 0.5f * middle;
         // Single stones and bushes are what a pixel can show near by; from afar as strong a grain would be felt, not ground.
-        float small = mix(0.75f, 0.35f, smoothstep(2.0f, 40.0f, s.footprint)) * fine.w + 0.4f * middle + 0.7f * patch_noise(s.view, 4.0f).w;
+        float small = mix(0.75f, 0.35f, smoothstep(2.0f, 40.0f, slanted.footprint)) * fine.w + 0.4f * middle + 0.7f * patch_noise(s.view, 4.0f).w;
         // Bumps stand for what is finer than any elevation data: none from afar, few on the plains but for stones and tufts.
         vec3 bump = vec3(fine) - dot(vec3(fine), ground) * ground;
-        float rough = (1.0f - smoothstep(15.0f, 150.0f, s.footprint)) * min(1.0f - 0.7f * smoothstep(0.3f, 3.0f, s.footprint) + 2.5f * (1.0f - dot(ground, s.normal)), 1.0f);
-        vec3 cover = ground_cover(s, dot(ground, s.normal), large, small);
+        float rough = (1.0f - smoothstep(15.0f, 150.0f, slanted.footprint)) * min(1.0f - 0.7f * smoothstep(0.3f, 3.0f, slanted.footprint) + 2.5f * (1.0f - dot(ground, s.normal)), 1.0f);
+        vec3 cover = ground_cover(slanted, dot(ground, s.normal), large, small);
         ground = normalize(ground - bump * (0.35f * near * rough));
         albedo = mix(albedo, cover, near);
         float shore = smoothstep(0.35f, 0.65f, s.water + (s.height < 0.5f ? 0.3f : -0.15f));

@@ -55,4 +55,8 @@ vec4 texture(const RepeatedVolume& v, const vec3& at) {
     return sum / 255.0f;
 }
 
+vec4 textureLod(const RepeatedVolume& v, const vec3& at, float) {
+    return texture(v, at);
+}
+
 }  // namespace render::reference

@@ -26,6 +26,8 @@ using sampler3D = ClampedSampler;
 vec4 textureLod(const ClampedSampler& sampler, const vec2& at, float lod);
 vec4 textureLod(const ClampedSampler& sampler, const vec3& at, float lod);
 vec4 texture(const RepeatedVolume& volume, const vec3& at);
+/// Without mips: level 0 whatever the lod.
+vec4 textureLod(const RepeatedVolume& volume, const vec3& at, float lod);
 
 /// The shaders with their uniforms and textures.
 struct Shading : SkyUniforms {

@@ -267,7 +267,7 @@ SkyUniforms uniforms_of(const AtmosphereTables& tables, const View& v, const dve
                         const Ratios& ratios) {
     const Atmosphere& air = tables.air;
     const double ground = v.profile.ground(), top = v.profile.top();
-    constexpr double period = 131072;  // 2^17 m
+    constexpr double period = 131072, near_period = 128;  // 2^17 m, 2^7 m
     SkyUniforms u{};
     u.sky_up = {v.up, v.r};
     u.sky_side = {v.side, air.equatorial_radius / air.polar_radius};
@@ -280,6 +280,7 @@ SkyUniforms uniforms_of(const AtmosphereTables& tables, const View& v, const dve
     u.sky_detail = {eye - period * glm::floor(eye / period), 9784.0};
     u.sky_exposure = {exposure_for(tables, eye, sun), 4.0, 0.003, 0.0};
     u.sky_picture = {0, 0, 1, 0.001};
+    u.sky_near = {eye - near_period * glm::floor(eye / near_period), 0};
     return u;
 }
 

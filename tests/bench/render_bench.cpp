@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <ctime>
 #include <numeric>
 #include <thread>
 
@@ -247,7 +248,7 @@ class Flight {
     static constexpr int frames = 600, drawn_every = 10;
 
     struct Times {
-        std::vector<double> update, upload, draw, sent;  // seconds; bytes
+        std::vector<double> update, update_work, upload, draw, sent;  // seconds, of all processors for work; bytes
     };
 
     Times fly() {
@@ -284,7 +285,9 @@ class Flight {
         view.radius_m = wgs84.mean_radius();
         view.finest_patch_level = w_.finest_level - 10;
         view.segment_angle = 96 / camera.focal_px;
+        const double work = processor_seconds();
         t.update.push_back(seconds([&] { segments_.update(w_.tiles, view, static_cast<int>(w_.threads)); }));
+        t.update_work.push_back(processor_seconds() - work);
         layers_.assign(segments_.segments().size(), -1);
         t.upload.push_back(seconds([&] { pass_.upload(segments_, layers_); }));
         t.sent.push_back(static_cast<double>(pass_.sent_bytes()));
@@ -314,6 +317,7 @@ class Flight {
         return none.upload();
     }
 
+    static double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
     template <class Work>
     static double seconds(Work&& work) {
         const auto start = std::chrono::steady_clock::now();
@@ -349,6 +353,9 @@ void flight(benchmark::State& state) {
         state.counters["upload_share"] = mean(moving.upload) / frame;
         state.counters["update_ms"] = 1e3 * median(moving.update);
         state.counters["update_p99_ms"] = 1e3 * percentile(moving.update, 0.99);
+        // On a busy machine the clock shows what others do: the work, over two processors at best.
+        state.counters["update_work_ms"] = 1e3 * median(moving.update_work);
+        state.counters["update_work_p99_ms"] = 1e3 * percentile(moving.update_work, 0.99);
         state.counters["draw_ms"] = 1e3 * median(moving.draw);
         state.counters["sent_kB"] = 1e-3 * median(moving.sent);
         state.counters["sent_p99_kB"] = 1e-3 * percentile(moving.sent, 0.99);

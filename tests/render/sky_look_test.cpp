@@ -78,9 +78,32 @@ TEST(SkySurface, NoiseStaysWhereItIsWhenTheEyeCrossesItsPeriod) {
     Shading a = scene().shading, b = a;
     a.sky_detail = glm::vec4(131072.0f - 64, 5, 7, 9784);  // one eye, written on either side of the period
     b.sky_detail = glm::vec4(-64, 5, 7, 9784);
+    a.sky_near = glm::vec4(64, 5, 7, 0);
+    b.sky_near = glm::vec4(-64, 5, 7, 0);
     for (const float size : {4.0f, 256.0f, 2048.0f, 16384.0f})
         for (float x = 0; x < 4 * size; x += 0.37f * size)
             EXPECT_NEAR(a.patch_noise(vec3(x, 0, 0), size).w, b.patch_noise(vec3(x, 0, 0), size).w, 0.02f) << size;
+    for (float footprint = 0.001f; footprint < 1e5f; footprint *= 1.3f)
+        for (float x = 0; x < 64 * footprint; x += 5 * footprint)
+            EXPECT_NEAR(a.detail_noise(vec3(x, 0, 0), footprint, footprint).w,
+                        b.detail_noise(vec3(x, 0, 0), footprint, footprint).w, 0.02f)
+                << footprint;
+}
+
+// The finest noise beside an eye that moves by a millimetre a step, far from the origin of the period.
+TEST(SkySurface, NoiseStandsStillUnderMillimetres) {
+    Shading s = scene().shading;
+    const double start = 131072 - 27.3, ground = start + 2;
+    float first = 0;
+    for (int step = 0; step < 40; ++step) {
+        const double eye = start + 0.001 * step;
+        s.sky_detail = glm::vec4(glm::dvec4(eye, 5, 7, 9784));
+        s.sky_near = glm::vec4(glm::dvec4(std::fmod(eye, 128.0), 5, 7, 0));
+        const vec3 view(static_cast<float>(ground - eye), 0.3f, 0);
+        const float noise = s.detail_noise(view, 0.001f, 0.001f).w + s.patch_noise(view, 4).w;
+        if (step == 0) first = noise;
+        EXPECT_NEAR(noise, first, 0.02f) << step;
+    }
 }
 
 TEST(SkySurface, ImageryFromAfarAndCoverNearWithoutASeam) {

@@ -40,6 +40,11 @@ class GdalSink : public RasterSink {
         check(messages);
     }
 
+    ~GdalSink() override {
+        const GdalMessages quiet;
+        dataset_.reset();
+    }
+
     void write(const SampleWindow& window, std::span<const float> samples) override {
         assert(samples.size() == window.count());
         const GdalMessages messages;

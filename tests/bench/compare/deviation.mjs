@@ -1,5 +1,6 @@
 // What a mesh has achieved, by brute force: the vertical distance of every sample from every triangle that holds it.
-// node deviation.mjs RASTER SIZE MESH.ply     prints JSON: triangles, max_m, uncovered (samples in no triangle)
+// node deviation.mjs RASTER SIZE MESH.ply     prints JSON: triangles, max_m, uncovered (samples in no triangle),
+//     upright (triangles without area in plan)
 //
 // Knows nothing of bisection: vertices are (column, -row, height), triangles anything with corners on samples.
 
@@ -27,13 +28,17 @@ for (let v = 0; v < vertices; ++v) {
 }
 
 const covered = new Uint8Array(n * n);
+let upright = 0;
 const worstIn = (a, b, c) => {
     const ax = column[a], ay = row[a];
     let bx = column[b] - ax, by = row[b] - ay, cx = column[c] - ax, cy = row[c] - ay, hb = height[b], hc = height[c];
     if (bx * cy - by * cx < 0) [bx, by, cx, cy, hb, hc] = [cx, cy, bx, by, hc, hb];
     const area = bx * cy - by * cx, ha = height[a];
-    if (area === 0) throw Error('a triangle without area');
     let worst = 0;
+    if (area === 0) {
+        ++upright;
+        return 0;
+    }
     for (let y = Math.min(0, by, cy); y <= Math.max(0, by, cy); ++y)
         for (let x = Math.min(0, bx, cx); x <= Math.max(0, bx, cx); ++x) {
             const ofB = x * cy - y * cx, ofC = bx * y - by * x, ofA = area - ofB - ofC;
@@ -50,4 +55,4 @@ for (let t = 0, at = 24 * vertices; t < triangles; ++t, at += 13) {
     if (view.getUint8(at) !== 3) throw Error('a polygon that is no triangle');
     max = Math.max(max, worstIn(view.getInt32(at + 1, true), view.getInt32(at + 5, true), view.getInt32(at + 9, true)));
 }
-console.log(JSON.stringify({triangles, max_m: max, uncovered: covered.reduce((sum, c) => sum - c, n * n)}));
+console.log(JSON.stringify({triangles, max_m: max, uncovered: covered.reduce((sum, c) => sum - c, n * n), upright}));

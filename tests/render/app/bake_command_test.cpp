@@ -81,7 +81,7 @@ TEST(BakeCommand, SummaryFitsAScreen) {
     }
 }
 
-// The numbers of vertices by level are in part counted and in part what is left: against reading every tile.
+// What the store says of its levels, against reading every tile.
 TEST(BakeCommand, InfoCountsVertices) {
     const ScratchFolder folder;
     hilly_terrain().write(folder / "dem.vrt");

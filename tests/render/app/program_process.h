@@ -52,6 +52,8 @@ class Process {
     }
 
     pid_t id() const { return id_; }
+    /// What it has written to standard output until now.
+    std::string out_so_far() const { return content(out_); }
     /// Once. The use of resources is that of this process alone.
     Outcome wait(rusage* usage = nullptr) {
         int status = 0;

@@ -107,7 +107,7 @@ constexpr Refusal bounds[] = {
     {"dem.vrt --max-triangles 9 --features in.geojson far.geojson --mask in.geojson -o t.ply", 3,
      "in.geojson: has no polygon", "polygons"},
     {"dem.vrt --max-triangles 2 --features in.geojson -o t.ply", 2, "the budget of triangles: 2 are fewer", "or more"},
-    {"specks.vrt --max-triangles 9 -o t.ply", 2, "the budget", "or more"},
+    {"specks.vrt --max-triangles 9 -o t.ply", 3, "the TIN: no triangle", "three valid samples side by side"},
     {"dem.vrt --max-deviation 9 --quality good -o t.ply", 2, "--quality: 'good' is unknown", "fast, standard, best"},
     {"dem.vrt --max-deviation 9 --metric max -o t.ply", 2, "--metric: 'max' is unknown", "local, regional, rms"},
     {"dem.vrt --max-deviation 9 --locate grid -o t.ply", 2, "--locate: 'grid' is unknown", "auto, cells, naive"},

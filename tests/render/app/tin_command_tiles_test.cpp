@@ -53,15 +53,16 @@ TEST_P(TinTilesOf, FitBitForBit) {
     Terrain terrain = wide_terrain();
     if (voids)
         terrain.height_m = [](int x, int y) {
-            const bool lake = x > 30 && x < 52 && y > 15 && y < 45, speck = x == 20 && y == 20, side = x > 58 && y < 22;
-            return lake || speck || side ? nan : hills(x, y);
+            const bool lake = x > 30 && x < 52 && y > 15 && y < 45, speck = x == 20 && y == 20, side = x > 58 && y < 22,
+                       below = y == 61 && x > 3 && x < 33;
+            return lake || speck || side || below ? nan : hills(x, y);
         };
     terrain.write(folder_ / "dem.vrt");
     const Json report = tin(std::string("dem.vrt --max-deviation 15 --datum ellipsoid --tile 20 -o out/ --frame ") +
                             frame + " --format " + format + " --error-grid e.tif");
-    EXPECT_EQ(report.at("tiles"), 16) << "none is void as a whole";
+    EXPECT_EQ(report.at("tiles"), voids ? 15 : 16);
     const std::vector<SurfaceMesh> tiles = read_tiles("out");
-    ASSERT_EQ(tiles.size(), 16u);
+    ASSERT_EQ(tiles.size(), voids ? 15u : 16u);
     std::size_t triangles = 0;
     for (const SurfaceMesh& tile : tiles) triangles += tile.triangles.size();
     EXPECT_EQ(triangles, report.at("triangles"));
@@ -99,7 +100,7 @@ TEST_P(TinTilesOf, FitBitForBit) {
             known += !std::isnan(errors.at(x, y));
         }
     EXPECT_NEAR(max, number(report, "deviation_max_m"), 1e-3);
-    EXPECT_TRUE(voids || known == 81u * 81u);
+    EXPECT_EQ(known, report.at("samples"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, TinTilesOf,
@@ -107,15 +108,15 @@ INSTANTIATE_TEST_SUITE_P(Table, TinTilesOf,
                                          Written{"glb", "enu"}, Written{"glb", "enu", true}, Written{"stl", "enu"},
                                          Written{"glb", "ecef"}, Written{"obj", "ecef", true}, Written{"glb", "utm"}));
 
-// Tiles of 900 km: the chords of borders sag, and what has to go in there goes into both tiles.
+// Tiles of 2000 km: the chords of borders sag along verticals that lean, and what has to go in there goes into both tiles.
 TEST_F(TinTiles, CurvedBordersAreMendedOnBothSides) {
     Terrain terrain = wide_terrain();
-    terrain.step_x = 0.4, terrain.step_y = -0.4, terrain.x = 0;
+    terrain.step_x = 0.9, terrain.step_y = -0.9, terrain.x = 0;
     terrain.write(folder_ / "dem.vrt");
     const Json report =
-        tin("dem.vrt --max-deviation 40 --datum ellipsoid --tile 20 -o out --format ply --frame ecef --quality fast");
+        tin("dem.vrt --max-deviation 1500 --datum ellipsoid --tile 20 -o out --format ply --frame ecef");
     EXPECT_GT(number(report, "tiles_remade"), 0) << "or this tests nothing";
-    EXPECT_LE(number(report, "deviation_max_m"), 40 + 1e-6);
+    EXPECT_LE(number(report, "deviation_max_m"), 1500 + 1e-6);
     const SurfaceMesh whole = put_together(read_tiles("out"));
     const planet::SurfaceCheck check = planet::check(whole, planet::MeshFrame::ecef);
     EXPECT_EQ(check.wrong_sides, 0u);

@@ -111,6 +111,12 @@ TEST(Values, Sizes) {
         EXPECT_NE(refusal([&] { parse_size("--it", text); }), "") << text;
 }
 
+TEST(Values, WholeNumbersInALine) {
+    EXPECT_EQ(parse_wholes("--it", "50, 150,250", 3, 300), (std::vector<std::size_t>{50, 150, 250}));
+    for (const char* text : {"", "50,", ",50", "50;60", "50,2", "301", "5.5"})
+        EXPECT_NE(refusal([&] { parse_wholes("--it", text, 3, 300); }), "") << text;
+}
+
 TEST(Values, ChoicesAreExact) {
     EXPECT_EQ(parse_choice("--it", "b", {"a", "b"}), 1u);
     EXPECT_EQ(parse_choices("--it", "c, a", {"a", "b", "c"}), (std::vector<std::size_t>{2, 0}));

@@ -1,0 +1,333 @@
+// octaglobe view in an X server without a screen, with real keys, buttons and motions.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "planet/elevation/image_io.h"
+#include "planet/geodesy/geodetic.h"
+#include "planet/geodesy/horizon.h"
+#include "render/app/values.h"
+#include "render/viewer/camera.h"
+#include "tests/render/app/picture_difference.h"
+#include "tests/render/app/program_process.h"
+
+namespace render {
+namespace {
+
+using namespace std::chrono_literals;
+
+void rest(std::chrono::milliseconds time) {
+    std::this_thread::sleep_for(time);
+}
+
+/// Starts a program found on PATH; its output goes nowhere but to the descriptor that stays open.
+pid_t start(const std::vector<std::string>& command, int kept = -1) {
+    const pid_t id = ::fork();
+    if (id != 0) return id;
+    const int nowhere = ::open("/dev/null", O_RDWR);
+    for (const int stream : {0, 1, 2}) ::dup2(nowhere, stream);
+    if (kept >= 0) ::fcntl(kept, F_SETFD, 0);
+    std::vector<char*> argv;
+    for (const auto& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    ::execvp(argv[0], argv.data());
+    ::_exit(127);
+}
+
+int run_quietly(const std::vector<std::string>& command) {
+    int status = 0;
+    ::waitpid(start(command), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// An X server of its own on a display that is free.
+class Screen {
+  public:
+    Screen() {
+        int ends[2];
+        if (::pipe2(ends, O_CLOEXEC) != 0) return;
+        server_ = start({"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1400x900x24", "-nolisten",
+                         "tcp", "-noreset"},
+                        ends[1]);
+        ::close(ends[1]);
+        char c = 0;
+        while (::read(ends[0], &c, 1) == 1 && c != '\n') name_ += c;
+        ::close(ends[0]);
+        if (!name_.empty()) name_ = ":" + name_;
+    }
+    Screen(const Screen&) = delete;
+    Screen& operator=(const Screen&) = delete;
+    ~Screen() { end(); }
+
+    /// Kills it, as a crash or the end of a session does.
+    void end() {
+        if (server_ <= 0) return;
+        ::kill(server_, SIGKILL);
+        ::waitpid(std::exchange(server_, 0), nullptr, 0);
+    }
+    const std::string& name() const { return name_; }
+    explicit operator bool() const { return !name_.empty(); }
+
+  private:
+    pid_t server_ = 0;
+    std::string name_;
+};
+
+/// The baked Earth that all tests share.
+std::filesystem::path default_store() {
+    const char* cache = ::getenv("XDG_CACHE_HOME");
+    if (cache != nullptr)
+        for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(cache) / "octaglobe"))
+            if (entry.path().extension() == ".octa") return entry.path();
+    throw std::runtime_error("no baked Earth");
+}
+
+bool has_program(const std::string& name) {
+    return run_quietly({"sh", "-c", "command -v " + name}) == 0;
+}
+
+std::string last_line(std::string text) {
+    if (!text.empty() && text.back() == '\n') text.pop_back();
+    return text.substr(text.rfind('\n') + 1);
+}
+
+class ViewCommand : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (!has_program("Xvfb")) GTEST_SKIP() << "Xvfb is not installed";
+        if (!has_program("xdotool")) GTEST_SKIP() << "xdotool is not installed";
+        screen_.emplace();
+        ASSERT_TRUE(*screen_) << "Xvfb does not start";
+        display_.emplace("DISPLAY", screen_->name().c_str());
+    }
+
+    Process view(const std::string& arguments) { return Process(folder_.path(), words("view " + arguments)); }
+    nlohmann::json report(const std::string& arguments) {
+        const Outcome outcome = run(folder_.path(), words("view " + arguments + " --json report.json"));
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return nlohmann::json::parse(content(folder_ / "report.json"), nullptr, false);
+    }
+    static void type(const std::vector<std::string>& command) {
+        std::vector<std::string> all{"xdotool"};
+        all.insert(all.end(), command.begin(), command.end());
+        EXPECT_EQ(run_quietly(all), 0) << command.front();
+    }
+    void wait_for_window() {
+        for (int i = 0; i < 300; ++i, rest(100ms))
+            if (run_quietly({"xdotool", "search", "--onlyvisible", "--name", "^Octaglobe$"}) == 0) return;
+        FAIL() << "no window";
+    }
+    /// While it loads, keys do nothing: there is a globe once C gives a line.
+    std::string wait_for_globe(const Process& process) {
+        wait_for_window();
+        for (int i = 0; i < 100 && process.out_so_far().empty(); ++i, rest(200ms)) type({"key", "c"});
+        return copy_view(process);
+    }
+    /// The line of a view that rests.
+    std::string copy_view(const Process& process) {
+        rest(800ms);
+        const std::size_t before = process.out_so_far().size();
+        type({"key", "c"});
+        for (int i = 0; i < 100 && process.out_so_far().size() == before; ++i) rest(50ms);
+        return last_line(process.out_so_far());
+    }
+
+    ScratchFolder folder_;
+    std::optional<Screen> screen_;
+    std::optional<ScratchVariable> display_;
+};
+
+/// The value behind an option in a command line.
+std::string value_of(const std::string& line, const std::string& option) {
+    const std::vector<std::string> all = words(line);
+    const auto found = std::find(all.begin(), all.end(), option);
+    return found == all.end() || found + 1 == all.end() ? "" : found[1];
+}
+
+/// The pose that a copied line says, over ground at h = 0.
+Pose pose_of_line(const std::string& line) {
+    const planet::Geodetic at = parse_place("--at", value_of(line, "--at"));
+    const std::string heading = value_of(line, "--heading");
+    return {planet::normal_from_geodetic(at.latitude, at.longitude),
+            parse_distance("--height", value_of(line, "--height"), {0, 1e9}),
+            heading.empty() ? 0 : parse_angle("--heading", heading, {0, 360}),
+            parse_angle("--pitch", value_of(line, "--pitch"), {-90, 90})};
+}
+
+class SettledView : public ViewCommand, public testing::WithParamInterface<const char*> {};
+
+// The view as a command line gives the picture that the window shows.
+TEST_P(SettledView, IsThePictureOfItsCommandLine) {
+    const auto view = report(std::string(GetParam()) + " --bare --size 240x136 --screenshot window.png");
+    ASSERT_TRUE(view.contains("view"));
+    EXPECT_TRUE(view["settled"].get<bool>());
+    EXPECT_EQ(view["gl_errors"], 0);
+    std::vector<std::string> arguments = words(view["view"].get<std::string>() + " -o picture.png");
+    arguments.erase(arguments.begin());
+    const Outcome outcome = run(folder_.path(), arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const PictureDifference d =
+        compare(planet::read_image(folder_ / "window.png"), planet::read_image(folder_ / "picture.png"), 3);
+    EXPECT_GT(d.pixels, 0u);
+    EXPECT_LE(d.share(), 0.0005) << view["view"] << ", the worst by " << d.worst;
+}
+
+INSTANTIATE_TEST_SUITE_P(Views, SettledView,
+                         testing::Values("",
+                                         "--at 37.58,-105.49 --range 20km --heading 30 --pitch -15 --show graticule",
+                                         "--at 89.5,20 --range 900km --pitch -50 --exaggeration 3 --show mesh,levels",
+                                         "--at 37.58,-105.49 --range 60km --pitch -40 --max-triangles 9000"));
+
+// 1,000 frames that each turn the view: no OpenGL error, and no memory but what caches may take.
+TEST_F(ViewCommand, AThousandFramesLeakNothing) {
+    const auto view = report("--at 37.58,-105.49 --range 900km --pitch -50 --size 320x240 --frames 1000 --turn 0.36");
+    EXPECT_EQ(view["frames"], 1000);
+    EXPECT_EQ(view["gl_errors"], 0) << view["first_gl_error"];
+    const double early = view["memory_early_bytes"], late = view["memory_late_bytes"];
+    EXPECT_GT(early, 1e7);
+    EXPECT_LT(late - early, 64e6) << early << " after 100 frames, " << late << " after 1,000";
+}
+
+/// How far what a pixel showed of the sea is from another one now.
+double pixels_off(const std::string& line_before, const glm::dvec2& was, const std::string& line_after,
+                  const glm::dvec2& is) {
+    const Lens lens{focal_length_px(40 * planet::degrees, 640, 480), 640, 480};
+    const Pose before = pose_of_line(line_before), after = pose_of_line(line_after);
+    const glm::dvec3 way = ray(before, lens, was);
+    const glm::dvec3 point = before.eye() + *planet::distance_to_ellipsoid(planet::wgs84, before.eye(), way) * way;
+    const auto at = pixel_of_point(after, lens, point);
+    return at ? glm::distance(*at, is) : 1e9;
+}
+
+// Over the sea, where the ground is the geoid: what was under the button when it went down is under it at the end.
+TEST_F(ViewCommand, ADragHoldsTheGround) {
+    Process process = view("--at 0,-30 --range 600km --size 640x480");
+    const std::string before = wait_for_globe(process);
+    type({"mousemove", "200", "150"});
+    rest(200ms);
+    type({"mousedown", "1"});
+    for (int i = 1; i <= 10; ++i) {
+        rest(40ms);
+        type({"mousemove", std::to_string(200 + 20 * i), std::to_string(150 + 14 * i)});
+    }
+    rest(400ms);  // a hand that rests throws nothing
+    type({"mouseup", "1"});
+    const std::string after = copy_view(process);
+    EXPECT_NE(before, after);
+    EXPECT_LT(pixels_off(before, {200, 150}, after, {400, 290}), 1) << before << '\n' << after;
+    type({"key", "ctrl+q"});
+    EXPECT_EQ(process.wait().status, 0);
+}
+
+TEST_F(ViewCommand, TheWheelZoomsToTheCursor) {
+    Process process = view("--at 0,-30 --range 600km --size 640x480");
+    const std::string before = wait_for_globe(process);
+    type({"mousemove", "450", "130"});
+    for (int i = 0; i < 4; ++i) {
+        rest(100ms);
+        type({"click", "4"});
+    }
+    rest(500ms);
+    const std::string after = copy_view(process);
+    EXPECT_LT(pose_of_line(after).h, 0.6 * pose_of_line(before).h);
+    EXPECT_LT(pixels_off(before, {450, 130}, after, {450, 130}), 1) << before << '\n' << after;
+    type({"key", "ctrl+q"});
+    EXPECT_EQ(process.wait().status, 0);
+}
+
+TEST_F(ViewCommand, PanelsAndKeysDoNotDisturbIt) {
+    Process process = view("--size 800x600");
+    wait_for_globe(process);
+    for (const char* key :
+         {"h", "F3",           "Tab", "u",       "r", "l", "w",    "s",      "v",   "k",   "f",  "f",    "b",
+          "b", "bracketright", "e",   "shift+e", "n", "d", "Home", "Escape", "F11", "F11", "Up", "plus", "g"}) {
+        type({"key", key});
+        rest(60ms);
+    }
+    type({"type", "37.58, -105.49"});
+    type({"key", "Return"});
+    rest(300ms);
+    EXPECT_TRUE(copy_view(process).starts_with("octaglobe render --at "));
+    type({"key", "ctrl+q"});
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+}
+
+// What is open stays open: the file is gone, and the window goes on.
+TEST_F(ViewCommand, AStoreThatIsRemovedWhileOpen) {
+    std::filesystem::copy_file(default_store(), folder_ / "earth.octa");
+    Process process = view("--store earth.octa --at 46,8 --range 3000km --size 400x300");
+    wait_for_globe(process);
+    std::filesystem::remove(folder_ / "earth.octa");
+    type({"key", "Home"});
+    rest(300ms);
+    for (int i = 0; i < 6; ++i) type({"click", "4"});
+    EXPECT_TRUE(copy_view(process).starts_with("octaglobe render --at "));
+    type({"key", "ctrl+q"});
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST_F(ViewCommand, ADisplayThatGoesAwayIsOneLine) {
+    Process process = view("--size 400x300");
+    wait_for_window();
+    rest(800ms);
+    screen_->end();
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_EQ(outcome.err, "octaglobe: window: the display has gone away\n");
+}
+
+TEST_F(ViewCommand, ClosedWhileItLoadsItLeavesNothingHalfDone) {
+    const ScratchFolder cache;
+    const ScratchVariable variable("XDG_CACHE_HOME", cache.path().c_str());
+    Process process = view("--size 400x300");  // bakes the Earth: tens of seconds
+    wait_for_window();
+    rest(700ms);
+    type({"key", "ctrl+q"});
+    const auto pressed = std::chrono::steady_clock::now();
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_LT(std::chrono::steady_clock::now() - pressed, 15s);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(cache.path()))
+        EXPECT_EQ(entry.path().native().find(".octa"), std::string::npos) << entry.path();
+}
+
+TEST_F(ViewCommand, WithoutAFontItStillReads) {
+    const ScratchVariable font("OCTAGLOBE_FONT", "/dev/null");
+    EXPECT_EQ(report("--size 400x300 --frames 3")["gl_errors"], 0);
+}
+
+TEST_F(ViewCommand, AScreenshotThatCannotBeWrittenIsRefusedFirst) {
+    const Outcome outcome = run(folder_.path(), words("view --screenshot nowhere/x.png"));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("nowhere"), std::string::npos) << outcome.err;
+}
+
+TEST(ViewCommandAlone, WithoutADisplayItSaysSo) {
+    const ScratchFolder folder;
+    const ScratchVariable display("DISPLAY", ""), wayland("WAYLAND_DISPLAY", "");
+    const Outcome outcome = run(folder.path(), words("view"));
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_TRUE(outcome.err.starts_with("octaglobe: window: ")) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
+// The program alone, as where GLFW is missing: everything else works, and view says what it lacks.
+TEST(ViewCommandAlone, WithoutTheModuleItSaysSo) {
+    const ScratchFolder folder;
+    const std::filesystem::path program = folder / "octaglobe";
+    std::filesystem::copy_file(OCTAGLOBE_PROGRAM, program);
+    const std::string shell = "OCTAGLOBE_MODULES= " + program.native() + " view 2> " + (folder / "err").native();
+    EXPECT_EQ(run_quietly({"sh", "-c", shell}), 4);
+    EXPECT_NE(content(folder / "err").find("octaglobe_window"), std::string::npos) << content(folder / "err");
+}
+
+}  // namespace
+}  // namespace render
