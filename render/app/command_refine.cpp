@@ -164,8 +164,8 @@ void check_mesh(const RefineCommand& o) {
     const int ways = goal + o.steps.has_value() + o.split.has_value();
     require(ways <= 1, o.steps ? "--steps" : "--split", "goes with no limit and no other way to refine",
             "--steps, --split, or limits");
-    require(ways == 1 || o.progressive || o.weld || o.output || o.picture, "refine", "no limit given",
-            "--max-side, --max-deviation, --max-triangles, --steps or --split");
+    require(ways == 1 || o.weld, "refine", "no limit given",
+            "--max-side, --max-deviation, --max-triangles, --steps or --split; or --weld alone");
     require(goal || !o.order, "--order", "is for limits", "--max-side, --max-deviation or --max-triangles");
     require(o.order != planet::SplitOrder::deviation || !o.elevation.empty(), "--order", "deviation from what",
             "--order deviation with --elevation FILE");
