@@ -1,7 +1,7 @@
 #pragma once
 // A raster of heights below a mesh that is refined: where its vertices belong, and how far the mesh is from the samples.
 
-#include <memory>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,9 +27,12 @@ class RefineTerrain {
 
     struct Measured {
         double max = 0, rms = 0;                 ///< m
+        double max_in_region = 0;                ///< m, over triangles for which `region` holds
         std::size_t samples = 0, uncovered = 0;  ///< valid ones in triangles, each counted once; in none
     };
-    Measured measure(const planet::PlainMesh& mesh) const;
+    /// @param region empty: all triangles
+    Measured measure(const planet::PlainMesh& mesh,
+                     const std::function<bool(const planet::TrianglePlaces&)>& region = {}) const;
 
   private:
     struct Box {
