@@ -181,18 +181,24 @@ double RefineTerrain::deviation(const planet::TrianglePlaces& triangle) const {
     return largest;
 }
 
-RefineTerrain::Measured RefineTerrain::measure(const planet::PlainMesh& mesh) const {
+RefineTerrain::Measured RefineTerrain::measure(const planet::PlainMesh& mesh,
+                                               const std::function<bool(const planet::TrianglePlaces&)>& region) const {
     Measured out;
     std::vector<bool> met(samples_.size());
     double squares = 0;
-    for (const auto& t : mesh.triangles)
-        for_each_sample({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}, [&](std::size_t i, double d) {
-            out.max = std::max(out.max, d);
+    for (const auto& t : mesh.triangles) {
+        const planet::TrianglePlaces places{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+        double largest = 0;
+        for_each_sample(places, [&](std::size_t i, double d) {
+            largest = std::max(largest, d);
             if (met[i]) return;
             met[i] = true;
             squares += d * d;
             ++out.samples;
         });
+        out.max = std::max(out.max, largest);
+        if (largest > out.max_in_region && (!region || region(places))) out.max_in_region = largest;
+    }
     const auto valid =
         std::count_if(samples_.begin(), samples_.end(), [](const glm::dvec3& s) { return !std::isnan(s.z); });
     out.uncovered = static_cast<std::size_t>(valid) - out.samples;
