@@ -11,20 +11,26 @@
 namespace planet {
 namespace {
 
-/// Takes numbers off the front. @param what is not `count` numbers if it is not
-glm::dvec3 numbers_from(std::string_view& words, int count, const char* what) {
-    glm::dvec3 v(0);
-    for (int axis = 0; axis < count; ++axis) {
+glm::dvec3 place_from(std::string_view& words) {
+    glm::dvec3 v;
+    for (int axis = 0; axis < 3; ++axis) {
         const auto value = number_from<double>(take_word(words));
-        if (!value) throw MalformedBytes(std::string(what) + " is not " + (count == 3 ? "three" : "two") + " numbers");
+        if (!value) throw MalformedBytes("a vertex is not three numbers");
         v[axis] = *value;
     }
     return v;
 }
 
+/// What is missing is 0, as the second of a texture coordinate may be.
+glm::vec3 attribute_from(std::string_view words) {
+    glm::vec3 v(0);
+    for (int i = 0; i < 3; ++i) v[i] = number_from<float>(take_word(words)).value_or(0);
+    return v;
+}
+
 /// x y z, or x y z red green blue; a fourth number alone is a weight.
 void read_vertex(std::string_view words, ReadMesh& read) {
-    read.mesh.vertices.push_back(numbers_from(words, 3, "a vertex"));
+    read.mesh.vertices.push_back(place_from(words));
     glm::vec4 color(0, 0, 0, 1);
     for (int i = 0; i < 3; ++i) {
         const auto value = number_from<float>(take_word(words));
@@ -47,10 +53,10 @@ std::uint32_t corner_from(std::string_view word, std::size_t vertices) {
 class CornerAttributes {
   public:
     void add_uv(std::string_view words) {
-        const glm::dvec3 uv = numbers_from(words, 2, "a texture coordinate");
+        const glm::vec3 uv = attribute_from(words);
         uv_.emplace_back(uv.x, 1 - uv.y);  // from the bottom left
     }
-    void add_normal(std::string_view words) { normals_.emplace_back(numbers_from(words, 3, "a normal")); }
+    void add_normal(std::string_view words) { normals_.push_back(attribute_from(words)); }
 
     /// @param word 7/1/2, 7//2, 7/1 or 7. Faces before their vertices get none.
     void add_corner(std::string_view word, std::uint32_t vertex, std::size_t vertices) {
