@@ -79,7 +79,7 @@ TEST_F(RefineStreamTest, FramesMoveFromFlatToTerrain) {
 TEST_F(RefineStreamTest, AViewIsFineNearThePlaceOnly) {
     hilly_terrain().write(folder_ / "dem.vrt");
     write_mesh_file(folder_ / "flat.ply", terrain_rectangle(), degrees_reference());
-    refine("flat.ply --elevation dem.vrt --max-side 500 --progressive hills.oprog");
+    refine("flat.ply --elevation dem.vrt --max-side 200 --progressive hills.oprog");
     const Json near = refine("hills.oprog --view 49.7,10.05,2km -o near.ply");
     const Json far = refine("hills.oprog --view 49.7,10.05,200km -o far.ply");
     const Json whole = refine("hills.oprog -o whole.ply");
