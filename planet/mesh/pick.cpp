@@ -25,12 +25,10 @@ class Picker {
     // The same order of tests as in Walk (refine.h): the same leaves.
     void cell(const PlacedTile& t, unsigned i) {
         if (i >> t.depth) {
-            if (t.depth == tile_levels) {
-                const PlacedTile* child = t.child(tiles_, i - tile_cells, test_);
-                if (child && test_(child->split[1])) {
-                    halves(*child, 1);
-                    return;
-                }
+            const PlacedTile* child = t.child(tiles_, t.position_below(i), test_);
+            if (child && test_(child->split[1])) {
+                halves(*child, 1);
+                return;
             }
             leaf(t, i);
         } else if (test_(t.split[i])) {
@@ -84,8 +82,7 @@ class Picker {
     // Below 0 in a record: a diamond of the store that has no tile in memory.
     static double deviation_of(const PlacedTile& t, unsigned i) {
         if (i >> t.depth == 0) return std::abs(static_cast<double>(t.split[i].deviation));
-        if (t.depth < tile_levels || t.child_bound.empty()) return 0;
-        return std::abs(static_cast<double>(t.child_bound[i - tile_cells].deviation));
+        return std::abs(static_cast<double>(t.child_bound[t.position_below(i)].deviation));
     }
 
     const TileSource& tiles_;

@@ -53,8 +53,8 @@ class GroundWalk {
     // All of these are called inside enter() of the cell.
     void below(const Tile& tile, unsigned local, const Corners& corners, bool counter_clockwise) {
         if (local >> tile.depth) {
-            if (local >= tile_cells && tile.child_exists[local - tile_cells] &&
-                tile.child_deviation[local - tile_cells] > 0) {
+            const unsigned position = local - (1u << tile.depth);
+            if (tile.child_exists[position] && tile.child_deviation[position] > 0) {
                 const int level = static_cast<int>(std::bit_width(local)) - 1;
                 const auto next = tiles_.tile(LocationCode(tile.root.bits() << level | (local ^ 1u << level)));
                 if (next && !next->damaged && next->deviation[1] > 0) {

@@ -94,7 +94,7 @@ bool ViewerSession::load() {
         for (const InputEvent& event : window_.wait(0.05))
             if (action_of(event) == Action::leave) return false;
         const GlobeLoading::Progress progress = loading_->progress();
-        panels_.progress = progress.step;
+        panels_.progress = "Loading: " + progress.step;
         panels_.progress_part = std::isnan(progress.part) ? 0 : static_cast<float>(progress.part);
         gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
         gl().Viewport(0, 0, window_.width(), window_.height());
@@ -152,7 +152,7 @@ double ViewerSession::patience() const {
 bool ViewerSession::step() {
     const std::vector<InputEvent> events = window_.wait(patience());
     input_ = false;
-    const double now = window_.seconds(), dt = std::min(now - last_step_, 0.1);
+    const double now = window_.seconds(), dt = now - last_step_;
     last_step_ = now;
     if (window_.closed() || leaving_) return false;
     if (window_.width() == 0 || window_.height() == 0) {  // an icon

@@ -16,11 +16,13 @@ constexpr double notch = 0.24;         // natural logarithm of the distance
 constexpr double zoom_time_s = 0.09;   // in which two thirds of a zoom happen
 constexpr double turn_per_px = 0.005;  // rad
 constexpr double held_still_s = 0.08;  // a hand that rests so long before it lets go throws nothing
+constexpr double slow_frame_s = 0.12, longest_step_s = 0.1;
 constexpr double least_range_m = 3;
 
 }  // namespace
 
 void Navigator::stop() {
+    thrown_ = false;
     glide_.stop();
     flight_.reset();
     zoom_left_ = 0;
@@ -54,7 +56,8 @@ void Navigator::handle(const InputEvent& event, const Lens& lens) {
     } else if (event.kind == motion && drag_ != Drag::none) {
         drag_to(event, lens);
     } else if (event.kind == button_up) {
-        if (event.seconds - last_seconds_ > held_still_s || drag_ != Drag::ground) glide_.stop();
+        thrown_ = drag_ == Drag::ground && event.seconds - last_seconds_ <= held_still_s;
+        if (!thrown_) glide_.stop();
         drag_ = Drag::none;
     } else if (event.kind == wheel && event.wheel != 0) {
         begin_zoom(event.wheel, {event.x, event.y}, lens);
@@ -63,6 +66,7 @@ void Navigator::handle(const InputEvent& event, const Lens& lens) {
 
 void Navigator::begin_drag(const InputEvent& event, const Lens& lens) {
     stop();
+    noted_ = pose_;
     const glm::dvec2 pixel(event.x, event.y);
     const auto anchor = anchor_at(pixel, lens);
     const bool left = event.button == MouseButton::left && !event.control && !event.shift;
@@ -97,7 +101,6 @@ void Navigator::drag_to(const InputEvent& event, const Lens& lens) {
         pose_ = orbited(pose_, lens, anchor_.point, *at, -way.x * turn_per_px, -way.y * turn_per_px);
     }
     keep_above_ground();
-    if (drag_ == Drag::ground) glide_.note(before, pose_, event.seconds - last_seconds_);
     last_pixel_ = pixel;
     last_seconds_ = event.seconds;
 }
@@ -115,7 +118,19 @@ void Navigator::zoom(double factor, const Lens& lens) {
     zoom_left_ = std::log(factor);
 }
 
-void Navigator::advance(double seconds, const Lens& lens, const Steering& steering) {
+// Events carry the time when they are looked at, which after a slow frame is the same for all: what a hand did is known by
+// frame, and after a slow one not whether it moved to the end.
+void Navigator::note_throw(double seconds) {
+    if (drag_ != Drag::ground && !thrown_) return;
+    glide_.note(noted_, pose_, seconds);
+    noted_ = pose_;
+    if (thrown_ && seconds > slow_frame_s) glide_.stop();
+    thrown_ = false;
+}
+
+void Navigator::advance(double since_last, const Lens& lens, const Steering& steering) {
+    note_throw(since_last);
+    const double seconds = std::min(since_last, longest_step_s);
     if (steering.any()) {
         stop();
         steer(seconds, lens, steering);

@@ -36,8 +36,8 @@ class Navigator {
 
     /// A button, a motion or the wheel. Keys are left alone.
     void handle(const InputEvent& event, const Lens& lens);
-    /// Lets time pass: glides, zooms, flies, steers.
-    void advance(double seconds, const Lens& lens, const Steering& steering);
+    /// Lets time pass: glides, zooms, flies, steers. @param since_last call, seconds
+    void advance(double since_last, const Lens& lens, const Steering& steering);
     /// Whether the next advance() changes anything without a hand.
     bool moves() const { return flight_ || zoom_left_ != 0 || glide_.moving(); }
     bool flies() const { return flight_.has_value(); }
@@ -62,6 +62,7 @@ class Navigator {
         glm::dvec3 point{0};
         glm::dvec2 pixel{0};
     };
+    void note_throw(double seconds);
     void begin_drag(const InputEvent& event, const Lens& lens);
     void drag_to(const InputEvent& event, const Lens& lens);
     void begin_zoom(double notches, const glm::dvec2& pixel, const Lens& lens);
@@ -81,6 +82,8 @@ class Navigator {
     double pressed_seconds_ = -1;
     glm::dvec2 pressed_pixel_{0};
     Glide glide_;
+    Pose noted_;           ///< of the last advance() of a drag
+    bool thrown_ = false;  ///< the button went up while the hand moved
     Anchor zoom_anchor_;
     double zoom_left_ = 0;  ///< natural logarithm of the factor that is still to come
     std::optional<Flight> flight_;

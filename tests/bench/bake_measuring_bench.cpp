@@ -219,8 +219,13 @@ struct Samples {
         for (std::size_t t = 0; t < bake_scene().leaves.size(); t += 8) {
             leaf.push_back(t);
             vertices += lattices()[t].size();
-            bake_scene().field->samples(cap_of(bake_scene().leaves[t]->tile.root), normals.emplace_back(),
-                                        heights.emplace_back());
+            std::vector<glm::dvec3>& n = normals.emplace_back();
+            std::vector<float>& h = heights.emplace_back();
+            const SampleArea area(corners(bake_scene().leaves[t]->tile.root));
+            bake_scene().field->sample_rows(area, [&](auto some_normals, auto some_heights) {
+                n.insert(n.end(), some_normals.begin(), some_normals.end());
+                h.insert(h.end(), some_heights.begin(), some_heights.end());
+            });
         }
     }
 };
@@ -251,10 +256,8 @@ void samples_of_the_field(benchmark::State& state) {
     for (auto _ : state) {
         vertices = 0;
         for (std::size_t t = 0; t < scene.leaves.size(); t += 8) {
-            std::vector<glm::dvec3> normals;
-            std::vector<float> heights;
-            scene.field->samples(cap_of(scene.leaves[t]->tile.root), normals, heights);
-            benchmark::DoNotOptimize(heights.data());
+            const SampleArea area(corners(scene.leaves[t]->tile.root));
+            scene.field->sample_rows(area, [](auto, auto heights) { benchmark::DoNotOptimize(heights.data()); });
             vertices += scene.leaves[t]->tile.height.size();
         }
     }

@@ -25,7 +25,9 @@ struct BakeScene {
     std::size_t leaf_vertices = 0;
 
     BakeScene() {
-        const ElevationStore store = bake_in_memory(*field, {.first_tile_level = scale.layers.first});
+        BakeOptions options;
+        options.first_tile_level = scale.layers.first;
+        const ElevationStore store = bake_in_memory(*field, options);
         for (const LocationCode root : store.tiles()) tiles.push_back(as_baked(*store.read(root)));
         for (const BakedTile& t : tiles)
             if (!t.inner() && t.tile.min_height > 0 && std::count(t.exists.begin(), t.exists.end(), 0) == 1)

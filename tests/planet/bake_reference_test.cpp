@@ -44,6 +44,7 @@ BumpyField pole_field() {
 BakeOptions options_with_geoid() {
     BakeOptions o;
     o.least_level = 6;
+    o.first_tile_level = 12;  // many tiles
     o.undulation = testing::bumpy_undulation;
     o.undulation_name = "made up";
     o.threads = 1;
@@ -177,7 +178,7 @@ TEST_F(BakedFile, GoesOnWhereItWasStopped) {
     std::mt19937 random(5);
     int stops = 0;
     for (int trial = 0; trial < 3; ++trial) {
-        while (stopped_at(pole_field(), o, 3 + static_cast<int>(random() % 120), path("a.octa"))) {
+        while (stopped_at(pole_field(), o, 3 + static_cast<int>(random() % 50), path("a.octa"))) {
             ++stops;
             if (!std::filesystem::exists(path("a.octa"))) continue;
             const ElevationStore store = ElevationStore::open(path("a.octa"));
@@ -188,7 +189,7 @@ TEST_F(BakedFile, GoesOnWhereItWasStopped) {
         ASSERT_EQ(bytes(path("a.octa")), whole);
         std::filesystem::remove(path("a.octa"));
     }
-    EXPECT_GT(stops, 12);
+    EXPECT_GT(stops, 5);  // a busy machine hears of progress less often
 }
 
 // A process that bakes, telling through a pipe how far it is.

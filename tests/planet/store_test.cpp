@@ -231,7 +231,7 @@ TEST_F(StoreFile, CraftedTilesNeverCrash) {
     ASSERT_EQ(sqlite3_open(file.c_str(), &db), SQLITE_OK);
     sqlite3_stmt* select = nullptr;
     sqlite3_prepare_v2(db, "SELECT code, data FROM tiles ORDER BY code", -1, &select, nullptr);
-    const TileScale scale{Placement{}, 0.25, true};
+    const TileScale scale{Placement{}, 0.25, true, {}};
     std::mt19937 random(17);
     int decoded = 0, refused = 0;
     while (sqlite3_step(select) == SQLITE_ROW) {
@@ -266,7 +266,7 @@ TEST_F(StoreFile, ATileThatIsListedButMissingIsDamage) {
     const auto file = baked("a.octa");
     const std::vector<LocationCode> roots = ElevationStore::open(file).tiles();
     const LocationCode gone = roots.back();
-    ASSERT_EQ(gone.bisection_level(), 12);
+    ASSERT_GT(gone.bisection_level(), 0);
     sql(file, ("DELETE FROM tiles WHERE code = " + std::to_string(gone.bits())).c_str());
     const ElevationStore store = ElevationStore::open(file);
     EXPECT_THROW(store.read(gone), Error);

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <random>
+#include <stdexcept>
 
 #include "patchy_store.h"
 #include "planet/bake/layer_choice.h"
@@ -117,6 +119,36 @@ TEST_P(AnyFirstLevel, ABakeIsThePedestrianOne) {
         ASSERT_EQ(baked->child_deviation, tile.child_deviation);
         ASSERT_EQ(baked->child_radius, tile.child_radius);
     }
+}
+
+TEST_P(AnyFirstLevel, ABakeThatIsStoppedGoesOnToTheSameBytes) {
+    const BumpyField field(4e6, {glm::normalize(glm::dvec3(1, 0.0004, -0.0003)), 4e-4}, 300);
+    const auto path = std::filesystem::temp_directory_path() / ("octaglobe stopped " + std::to_string(getpid()));
+    const auto bytes = [&] {
+        std::ifstream in(path, std::ios::binary);
+        return std::vector<char>(std::istreambuf_iterator<char>(in), {});
+    };
+    BakeOptions o;
+    o.least_level = 6;
+    o.first_tile_level = first();
+    o.transaction_tiles = 8;
+    o.replace = true;
+    bake(field, o, path);
+    const std::vector<char> whole = bytes();
+    for (const double moment : {0.3, 0.8}) {
+        BakeOptions stopped = o;
+        stopped.progress = [&](std::string_view step, double fraction) {
+            if (step == "tiles" && fraction >= moment) throw std::runtime_error("stopped");
+        };
+        EXPECT_THROW(bake(field, stopped, path), std::runtime_error);
+        EXPECT_FALSE(ElevationStore::open(path).metadata().complete);
+        BakeOptions resumed = o;
+        resumed.replace = false;
+        resumed.resume = true;
+        bake(field, resumed, path);
+        EXPECT_EQ(bytes(), whole);
+    }
+    std::filesystem::remove(path);
 }
 
 const ElevationStore& uniform_store(int first) {

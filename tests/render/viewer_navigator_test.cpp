@@ -60,10 +60,12 @@ TEST(Navigator, DragsTheGroundAndThrowsIt) {
     n.handle(event(Kind::button_down, 500, 500, 1), lens);
     for (int i = 1; i <= 10; ++i) {
         n.handle(event(Kind::motion, 500 + 12 * i, 500 - 5 * i, 1 + 0.016 * i), lens);
+        n.advance(0.016, lens, {});
         EXPECT_LT(glm::distance(*pixel_of_point(n.pose(), lens, point), glm::dvec2(500 + 12 * i, 500 - 5 * i)), 1e-3);
     }
     const glm::dvec3 eye = n.pose().eye();
     n.handle(event(Kind::button_up, 620, 450, 1.17), lens);
+    n.advance(0.016, lens, {});
     EXPECT_TRUE(n.moves());
     EXPECT_LT(let_go(n), 600);
     EXPECT_GT(glm::distance(n.pose().eye(), eye), 1000);
@@ -72,8 +74,23 @@ TEST(Navigator, DragsTheGroundAndThrowsIt) {
 TEST(Navigator, AHandThatRestsThrowsNothing) {
     Navigator n(flat_ground(), pose_at(10, 10, 2e5, 20, -60));
     n.handle(event(Kind::button_down, 500, 500, 1), lens);
-    for (int i = 1; i <= 10; ++i) n.handle(event(Kind::motion, 500 + 12 * i, 500, 1 + 0.016 * i), lens);
+    for (int i = 1; i <= 10; ++i) {
+        n.handle(event(Kind::motion, 500 + 12 * i, 500, 1 + 0.016 * i), lens);
+        n.advance(0.016, lens, {});
+    }
     n.handle(event(Kind::button_up, 620, 500, 1.5), lens);
+    n.advance(0.016, lens, {});
+    EXPECT_FALSE(n.moves());
+}
+
+// All of a drag in one slow frame: whether the hand moved when it let go cannot be known.
+TEST(Navigator, ASlowFrameThrowsNothing) {
+    Navigator n(flat_ground(), pose_at(10, 10, 2e5, 20, -60));
+    n.handle(event(Kind::button_down, 500, 500, 1), lens);
+    n.advance(0.016, lens, {});
+    for (int i = 1; i <= 10; ++i) n.handle(event(Kind::motion, 500 + 12 * i, 500, 1.5), lens);
+    n.handle(event(Kind::button_up, 620, 500, 1.5), lens);
+    n.advance(0.5, lens, {});
     EXPECT_FALSE(n.moves());
 }
 

@@ -194,7 +194,8 @@ void GlfwWindow::listen() {
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int modifiers) {
         GlfwWindow& self = of(w);
         self.modifiers_ = modifiers;
-        if (PanelDrawing::takes_keys()) return;
+        const bool leaves = key == GLFW_KEY_Q && (modifiers & GLFW_MOD_CONTROL) != 0;
+        if (PanelDrawing::takes_keys() && !leaves) return;
         using enum InputEvent::Kind;
         InputEvent e = self.event(action == GLFW_PRESS ? press : action == GLFW_REPEAT ? repeat : release, modifiers);
         e.key = static_cast<Key>(key);

@@ -94,7 +94,7 @@ void PanelDrawing::draw(Panels& panels) {
     ImGui::NewFrame();
     panels.wants_frame = false;
     if (panels.shown) {
-        draw_overlay(panels);
+        if (panels.progress.empty()) draw_overlay(panels);
         if (panels.settings) draw_settings(panels);
         if (panels.statistics) draw_statistics(panels);
         if (panels.help) draw_help(panels);
