@@ -28,7 +28,8 @@ using planet::TrianglePlaces;
 
 /// Sums of doubles may be off by this much where the mesh is exact.
 constexpr double measuring_slack_m = 1e-6;
-constexpr std::size_t most_triangles = std::size_t{1} << 28;
+/// Without a budget: 11 GB.
+constexpr std::size_t most_triangles = 100'000'000;
 
 /// By its sides: Kahan, "Miscalculating Area and Angles of a Needle-like Triangle".
 double area_from_sides(std::array<double, 3> s) {
@@ -100,7 +101,7 @@ class MeshRefiner {
     void uniform_steps() {
         const auto step = report_.step("refine");
         for (int i = 0; i < *command_.steps; ++i) {
-            if (bisection_->triangle_count() > most_triangles / 4)
+            if (bisection_->triangle_count() > most_triangles / 2)
                 throw Error(Fault::bad_usage, "--steps", std::to_string(*command_.steps) + " make too many triangles",
                             "at most " + std::to_string(i));
             bisection_->step(region());
@@ -122,8 +123,9 @@ class MeshRefiner {
     planet::RefineGoal goal(double tolerance) const {
         planet::RefineGoal goal;
         if (command_.max_side) goal.max_side = *command_.max_side;
-        if (command_.max_deviation) goal.max_deviation = tolerance;
-        if (command_.max_triangles) goal.max_triangles = *command_.max_triangles;
+        // Less would be asking for what sums of doubles cannot show.
+        if (command_.max_deviation) goal.max_deviation = std::max(tolerance, 0.5 * measuring_slack_m);
+        goal.max_triangles = command_.max_triangles.value_or(most_triangles);
         goal.order = order();
         goal.region = region();
         if (terrain_ && (command_.max_deviation || order() == planet::SplitOrder::deviation)) {
@@ -149,6 +151,10 @@ class MeshRefiner {
                 const auto step = report_.step("refine");
                 end_ = bisection_->refine(goal(tolerance)).end;
             }
+            if (end_ == RefineEnd::budget && !command_.max_triangles)
+                throw Error(Fault::bad_usage, command_.max_deviation ? "--max-deviation" : "--max-side",
+                            "takes more than " + std::to_string(most_triangles) + " triangles",
+                            "a larger limit, or --max-triangles");
             set_stopped_by();
             if (!command_.max_deviation) return;
             measure_as_written();

@@ -107,9 +107,11 @@ glm::dvec2 RefineTerrain::column_row(glm::dvec2 p) const {
         const int c = static_cast<int>(std::clamp(std::floor(at.x), 0.0, width_ - 2.0));
         const int r = static_cast<int>(std::clamp(std::floor(at.y), 0.0, height_ - 2.0));
         const glm::dvec2 a(sample(c, r)), b(sample(c + 1, r)), d(sample(c, r + 1)), e(sample(c + 1, r + 1));
-        const double x = at.x - c, y = at.y - r;
+        // Within the cell bilinear; outside of it straight on, as it leaves there.
+        const double x = std::clamp(at.x - c, 0.0, 1.0), y = std::clamp(at.y - r, 0.0, 1.0);
         const glm::dvec2 twist = e - b - d + a, u = b - a + y * twist, v = d - a + x * twist;
-        const glm::dvec2 miss = p - (a + x * (b - a) + y * (d - a) + x * y * twist);
+        const glm::dvec2 miss =
+            p - (a + x * (b - a) + y * (d - a) + x * y * twist) - (at.x - c - x) * u - (at.y - r - y) * v;
         const double area = u.x * v.y - u.y * v.x;
         if (area == 0) break;
         const glm::dvec2 step((miss.x * v.y - miss.y * v.x) / area, (u.x * miss.y - u.y * miss.x) / area);
