@@ -18,7 +18,10 @@ constexpr double inner_cost = 3;
 class CellCensus {
   public:
     CellCensus(const ElevationField& field, const CoverageLimits& limits) : field_(field), limits_(limits) {
-        for (int face = 0; face < face_count; ++face) count(0, face_corners(face));
+        for (int face = 0; face < face_count; ++face) {
+            const Corners c = face_corners(face);
+            count(0, c, finest_level_in(c, field_, limits_), 1);
+        }
     }
 
     /// Of the tiles that begin at these layers, padding apart.
@@ -40,18 +43,24 @@ class CellCensus {
     double& at(int level, int finest) { return cells_[static_cast<std::size_t>(level * stride + finest)]; }
     double at(int level, int finest) const { return cells_[static_cast<std::size_t>(level * stride + finest)]; }
 
-    void count(int level, const Corners& c) {
-        const int finest = finest_level_in(c, field_, limits_);
+    // Halves that ask for the same are taken to be alike from some level on: what is visited grows with the borders of
+    // sources, not with their area.
+    void count(int level, const Corners& c, int finest, double weight) {
         if (finest <= level) return;
         if (finest - level <= tile_levels) {  // alike from here on
-            for (double cells = 1; level < finest; ++level, cells *= 2) at(level, finest) += cells;
+            for (double cells = weight; level < finest; ++level, cells *= 2) at(level, finest) += cells;
             return;
         }
-        at(level, finest) += 1;
+        at(level, finest) += weight;
         const glm::dvec3 m = split_vertex(c);
-        for (int i = 0; i < 2; ++i) count(level + 1, child_corners(c, m, i));
+        const std::array half{child_corners(c, m, 0), child_corners(c, m, 1)};
+        const std::array asked{finest_level_in(half[0], field_, limits_), finest_level_in(half[1], field_, limits_)};
+        if (level >= sampled_level && asked[0] == asked[1])
+            return count(level + 1, half[static_cast<std::size_t>(level % 2)], asked[0], 2 * weight);
+        for (std::size_t i = 0; i < 2; ++i) count(level + 1, half[i], asked[i], weight);
     }
 
+    static constexpr int sampled_level = 11;  // 16,384 cells, 250 km on Earth
     static constexpr int stride = max_bisection_level + 1;
 
     const ElevationField& field_;

@@ -109,7 +109,8 @@ void OutputFile::commit(std::string_view bytes) {
     const int closed = ::close(descriptor_);  // a full disk or a network file system may tell only now
     descriptor_ = -1;
     if (closed != 0) fail(errno);
-    if (!temporary_.empty() && ::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+    if (temporary_.empty()) return;  // a device
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
     unlist_temporary(fs::absolute(temporary_));
     temporary_.clear();
 }

@@ -178,7 +178,9 @@ TEST_F(BakedFile, GoesOnWhereItWasStopped) {
     std::mt19937 random(5);
     int stops = 0;
     for (int trial = 0; trial < 3; ++trial) {
-        while (stopped_at(pole_field(), o, 3 + static_cast<int>(random() % 50), path("a.octa"))) {
+        // Later and later: what is not final when a bake stops is lost, and may be more than it got to.
+        for (int calls = 0; stopped_at(pole_field(), o, calls + static_cast<int>(random() % 50), path("a.octa"));) {
+            calls += 20;
             ++stops;
             if (!std::filesystem::exists(path("a.octa"))) continue;
             const ElevationStore store = ElevationStore::open(path("a.octa"));

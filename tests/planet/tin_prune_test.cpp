@@ -41,8 +41,7 @@ TEST(TinPrune, KeepsWhatHasToStayWhateverGoesBesideIt) {
     std::vector<std::uint8_t> keep(mesh.vertex_slots(), 0);
     for (std::size_t v = 0; v < keep.size(); v += 3) keep[v] = 1;
     prune(mesh, grid, {20, 100, keep});
-    for (Index v = 0; v < keep.size(); ++v)
-        EXPECT_TRUE(keep[v] == 0 || mesh.vertex_alive(v)) << v;
+    for (Index v = 0; v < keep.size(); ++v) EXPECT_TRUE(keep[v] == 0 || mesh.vertex_alive(v)) << v;
 }
 
 TEST(TinPrune, ARemovalRefusedOnTheWayChangesNothing) {
