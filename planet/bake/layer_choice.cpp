@@ -43,8 +43,8 @@ class CellCensus {
     double& at(int level, int finest) { return cells_[static_cast<std::size_t>(level * stride + finest)]; }
     double at(int level, int finest) const { return cells_[static_cast<std::size_t>(level * stride + finest)]; }
 
-    // Halves that ask for the same are taken to be alike from some level on: what is visited grows with the borders of
-    // sources, not with their area.
+    // Of a field too large to be looked at whole, halves that ask for the same are taken to be alike from some level on:
+    // what is visited then grows with the borders of sources, not with their area.
     void count(int level, const Corners& c, int finest, double weight) {
         if (finest <= level) return;
         if (finest - level <= tile_levels) {  // alike from here on
@@ -55,17 +55,19 @@ class CellCensus {
         const glm::dvec3 m = split_vertex(c);
         const std::array half{child_corners(c, m, 0), child_corners(c, m, 1)};
         const std::array asked{finest_level_in(half[0], field_, limits_), finest_level_in(half[1], field_, limits_)};
-        if (level >= sampled_level && asked[0] == asked[1])
+        if (++visited_ > most_visited && level >= sampled_level && asked[0] == asked[1])
             return count(level + 1, half[static_cast<std::size_t>(level % 2)], asked[0], 2 * weight);
         for (std::size_t i = 0; i < 2; ++i) count(level + 1, half[i], asked[i], weight);
     }
 
-    static constexpr int sampled_level = 11;  // 16,384 cells, 250 km on Earth
+    static constexpr int sampled_level = 11;              // 16,384 cells, 250 km on Earth
+    static constexpr std::size_t most_visited = 1 << 20;  // a second at worst
     static constexpr int stride = max_bisection_level + 1;
 
     const ElevationField& field_;
     const CoverageLimits& limits_;
     std::array<double, stride * stride> cells_{};
+    std::size_t visited_ = 0;
 };
 
 }  // namespace

@@ -77,16 +77,17 @@ bool place_on_grid_of(const MosaicPart& other, MosaicPart& part) {
     return true;
 }
 
-/// A reader for one thread, given back when it is done.
+/// A reader that this thread opened, given back when it is done.
 class RasterMosaic::Borrowed {
   public:
     Borrowed(const RasterMosaic& mosaic, const MosaicPart& part) : mosaic_(mosaic), part_(part) {
         {
             const std::lock_guard lock(mosaic.mutex_);
-            const auto found = std::find_if(mosaic.idle_.rbegin(), mosaic.idle_.rend(),
-                                            [&](const auto& idle) { return idle.first == &part; });
+            const auto found = std::find_if(mosaic.idle_.rbegin(), mosaic.idle_.rend(), [&](const Idle& idle) {
+                return idle.part == &part && idle.opened_by == std::this_thread::get_id();
+            });
             if (found != mosaic.idle_.rend()) {
-                reader_ = std::move(found->second);
+                reader_ = std::move(found->reader);
                 mosaic.idle_.erase(std::next(found).base());
                 return;
             }
@@ -95,7 +96,7 @@ class RasterMosaic::Borrowed {
     }
     ~Borrowed() {
         const std::lock_guard lock(mosaic_.mutex_);
-        mosaic_.idle_.emplace_back(&part_, std::move(reader_));
+        mosaic_.idle_.push_back({&part_, std::this_thread::get_id(), std::move(reader_)});
         if (mosaic_.idle_.size() > most_idle) mosaic_.idle_.erase(mosaic_.idle_.begin());
     }
     Borrowed(const Borrowed&) = delete;

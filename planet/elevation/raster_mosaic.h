@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "planet/elevation/raster_io.h"
@@ -35,7 +36,9 @@ MosaicPart mosaic_part(const std::string& path, const RasterOptions& options = {
 bool place_on_grid_of(const MosaicPart& other, MosaicPart& part);
 
 /// Where files overlap, the later one is on top, except where it is void. Where there is no file the samples are void.
-/// Safe from several threads: each reads through open files of its own, of which a few are kept open.
+/// Safe from several threads: each reads only through files that it opened itself, of which a few are kept open. GDAL lets
+/// what one thread opens twice share one position in the file (.vrt over raw samples, sources of a .vrt), so an open file
+/// that is handed to another thread may read elsewhere than it was told.
 class RasterMosaic {
   public:
     /// @param parts  at least one, placed on one grid
@@ -55,7 +58,11 @@ class RasterMosaic {
     void check_unchanged(const MosaicPart& part) const;
 
   private:
-    using Readers = std::vector<std::pair<const MosaicPart*, std::unique_ptr<RasterReader>>>;
+    struct Idle {
+        const MosaicPart* part;
+        std::thread::id opened_by;
+        std::unique_ptr<RasterReader> reader;
+    };
     class Borrowed;
     struct Stamp {
         std::uintmax_t bytes;
@@ -80,7 +87,7 @@ class RasterMosaic {
     std::map<std::pair<int, int>, std::vector<std::uint32_t>> index_;
 
     mutable std::mutex mutex_;
-    mutable Readers idle_;  // most recently used last
+    mutable std::vector<Idle> idle_;  // most recently used last
 };
 
 /// All of a mosaic in memory, with its checksum. Throws Error if nothing but voids is in it.

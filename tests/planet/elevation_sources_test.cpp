@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <filesystem>
@@ -156,6 +157,29 @@ TEST(BlockedRaster, SeveralThreadsGetWhatOneGets) {
     std::vector<std::vector<float>> found(4, std::vector<float>(normals.size()));
     parallel_for(found.size(), 4, [&](std::size_t i) { blocked->heights(normals, found[i]); });
     for (const auto& f : found) expect_same_bits(f, expected);
+}
+
+// The first thread opens, hands on and opens again: what it opened may share a position in the file.
+TEST(BlockedRaster, AThreadReadsWhatItOpenedItself) {
+    const TemporaryFolder folder;
+    write_raster<std::int16_t>(folder / "a", sheet(900, 700, {10, 47}, 0.01), relief);
+    std::atomic<int> wrong = 0;
+    const auto read_some = [&](const RasterMosaic& mosaic, unsigned seed, int times) {
+        std::mt19937 random(seed);
+        std::vector<std::int16_t> samples(64 * 8);
+        for (int n = 0; n < times; ++n) {
+            const SampleWindow w{static_cast<int>(random() % 800), static_cast<int>(random() % 600), 64, 8};
+            if (!mosaic.read(w, samples)) ++wrong;
+            for (int k = 0; k < 64 * 8; ++k)
+                if (samples[static_cast<std::size_t>(k)] != relief(w.column + k % 64, w.row + k / 64)) ++wrong;
+        }
+    };
+    for (unsigned round = 0; round < 20; ++round) {
+        const RasterMosaic mosaic({mosaic_part(folder / "a")}, "a");
+        read_some(mosaic, round, 1);
+        parallel_for(4, 4, [&](std::size_t i) { read_some(mosaic, round + static_cast<unsigned>(i), 200); });
+    }
+    EXPECT_EQ(wrong, 0);
 }
 
 TEST(BlockedRaster, KeepsToItsMemory) {

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "planet/error.h"
@@ -140,12 +142,17 @@ class GlfwWindow final : public Window {
         e.control = (modifiers & GLFW_MOD_CONTROL) != 0;
         int w = 0, h = 0;
         glfwGetWindowSize(window_, &w, &h);
-        glfwGetCursorPos(window_, &e.x, &e.y);
+        std::tie(e.x, e.y) = cursor_ ? *cursor_ : cursor_now();
         const auto [pixels_w, pixels_h] = framebuffer_size();
         e.x *= static_cast<double>(pixels_w) / std::max(w, 1);
         e.y *= static_cast<double>(pixels_h) / std::max(h, 1);
         e.seconds = glfwGetTime();
         return e;
+    }
+    std::pair<double, double> cursor_now() const {
+        std::pair place(0.0, 0.0);
+        glfwGetCursorPos(window_, &place.first, &place.second);
+        return place;
     }
     static GlfwWindow& of(GLFWwindow* window) { return *static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window)); }
 
@@ -153,6 +160,8 @@ class GlfwWindow final : public Window {
     std::string way_;
     std::array<int, 4> place_{100, 100, 1280, 720};  ///< before it filled the screen
     std::vector<InputEvent> events_;
+    /// As the last event told it: the one that can be asked for may be further on than the button that is looked at.
+    std::optional<std::pair<double, double>> cursor_;
     int modifiers_ = 0;
     std::unique_ptr<PanelDrawing> panels_;
 };
@@ -210,7 +219,8 @@ void GlfwWindow::listen() {
         e.button = static_cast<MouseButton>(button);
         self.events_.push_back(e);
     });
-    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) {
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
+        of(w).cursor_ = {x, y};
         of(w).events_.push_back(of(w).event(InputEvent::Kind::motion, of(w).modifiers_));
     });
     glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double notches) {
