@@ -47,6 +47,21 @@ TEST(Conforming, SidesSharedWronglyAreNamed) {
     SurfaceMesh mesh = square();
     mesh.triangles[1] = {3, 2, 0};  // clockwise
     expect_fault(mesh,
+                 "the side from vertex 0 (0, 0, 0) to vertex 2 (1, 1, 0.5) has two triangles that turn unlike each "
+                 "other");
+    mesh = square();
+    mesh.vertices.emplace_back(0, 0, 1);
+    mesh.triangles.push_back({2, 0, 4});
+    expect_fault(mesh, "the side from vertex 0 (0, 0, 0) to vertex 2 (1, 1, 0.5) has 3 triangles");
+}
+
+TEST(Conforming, TJunctionsAreNamed) {
+    SurfaceMesh mesh = square();
+    mesh.vertices.emplace_back(0.5, -1, 0);
+    mesh.vertices.emplace_back(0.5, 0, 0);
+    mesh.triangles.push_back({0, 4, 5});
+    mesh.triangles.push_back({4, 1, 5});
+    expect_fault(mesh,
                  "the side from vertex 0 (0, 0, 0) to vertex 1 (1, 0, 0) has vertex 5 (0.5, 0, 0) within it: a "
                  "T-junction");
     mesh.vertices[5].y = -0.01;  // a hole is none

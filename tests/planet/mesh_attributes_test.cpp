@@ -27,8 +27,10 @@ MeshLooks looks_for(const SurfaceMesh& mesh) {
 MeshLooks through_file(const SurfaceMesh& mesh, const MeshLooks& looks, const std::string& ending) {
     const TemporaryFolder folder;
     std::string bytes;
-    write_mesh([&](std::string_view block) { bytes += block; }, mesh, {}, mesh_format("mesh" + ending), std::nullopt,
-               looks);
+    MeshReference reference;
+    reference.frame = MeshFrame::enu;  // an .stl has no other
+    write_mesh([&](std::string_view block) { bytes += block; }, mesh, reference, mesh_format("mesh" + ending),
+               std::nullopt, looks);
     write_bytes(folder / ("mesh" + ending), bytes);
     MeshLooks found;
     const SurfaceMesh read = read_mesh(folder / ("mesh" + ending), nullptr, &found);

@@ -1,10 +1,8 @@
 // What `octaglobe refine` refuses: one line that says what, where and what would be accepted, the right exit status, and
 // nothing left behind. Hostile meshes take no memory to speak of.
 
-#include <algorithm>
-#include <ostream>
-
 #include "tests/render/app/refine_program.h"
+#include "tests/render/app/refusals.h"
 
 namespace render {
 namespace {
@@ -48,36 +46,16 @@ void write_inputs(const ScratchFolder& folder) {
     write_features(folder / "line.geojson", R"({"type":"LineString","coordinates":[[10,50],[10.3,49.7]]})");
 }
 
-struct Refusal {
-    const char* arguments;
-    int status;
-    const char* line;      ///< what the line begins with, after "octaglobe: "
-    const char* accepted;  ///< what it says would be accepted, or a part of that
-};
-void PrintTo(const Refusal& refusal, std::ostream* out) {
-    *out << refusal.arguments;
-}
-
 class RefineRefusals : public testing::TestWithParam<Refusal> {};
 
 TEST_P(RefineRefusals, OneLineAndNoFile) {
     const ScratchFolder folder;
     write_inputs(folder);
     ASSERT_EQ(run(folder.path(), words("refine mesh.ply --steps 1 --progressive out.oprog")).status, 0);
-    const auto before = folder.names();
-    const auto limited = [] {
+    expect_one_line_and_no_file(folder, "refine", GetParam(), [] {
         const rlimit memory{std::size_t{4} << 30, std::size_t{4} << 30};
         ::setrlimit(RLIMIT_AS, &memory);
-    };
-    const Outcome outcome = run(folder.path(), words("refine " + std::string(GetParam().arguments)), limited);
-    EXPECT_EQ(outcome.status, GetParam().status);
-    EXPECT_TRUE(outcome.err.starts_with("octaglobe: " + std::string(GetParam().line))) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    const auto accepted = outcome.err.find("; accepted: ");
-    ASSERT_NE(accepted, std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find(GetParam().accepted, accepted), std::string::npos) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(folder.names(), before);
+    });
 }
 
 constexpr Refusal meshes[] = {
