@@ -53,7 +53,7 @@ planet::SegmentView LiveMesh::view_of(const Wanted& wanted) const {
     return view;
 }
 
-bool LiveMesh::update(const Wanted& wanted) {
+bool LiveMesh::step(const Wanted& wanted, bool wait) {
     const auto start = std::chrono::steady_clock::now();
     const auto threads = static_cast<int>(options_.thread_count());
     const bool was_at_rest = std::exchange(at_rest_, wanted.at_rest);
@@ -68,6 +68,7 @@ bool LiveMesh::update(const Wanted& wanted) {
     }
     const planet::SegmentView ahead = planet::view_ahead(view_, wanted.velocity_m_s, 0.5);
     const bool moves = wanted.velocity_m_s != glm::dvec3(0);
+    if (wait) segments_.invalidate(tiles_.settle(view_));
     const auto changes = tiles_.update(view_, moves ? &ahead : nullptr);
     segments_.invalidate(changes);
     segments_.update(tiles_, view_, threads);
@@ -91,6 +92,16 @@ bool LiveMesh::update(const Wanted& wanted) {
 
 bool LiveMesh::update_patches(bool mesh_changed, std::size_t most) {
     return patches_.update(segments_, mesh_changed, most);
+}
+
+void LiveMesh::settle(Wanted wanted) {
+    wanted.at_rest = true;
+    angle_factor_ = 1;
+    update_patches(step(wanted, true), patch_limit);
+    while (patches_.missing() > 0) {
+        patches_.wait();
+        update_patches(false, patch_limit);
+    }
 }
 
 bool LiveMesh::complete() const {
