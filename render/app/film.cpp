@@ -167,8 +167,7 @@ class Film {
 
     static std::span<const std::uint8_t> rgb_in_place(std::vector<std::uint8_t>& rgba) {
         const std::size_t count = rgba.size() / 4;
-        for (std::size_t i = 0; i < count; ++i)
-            std::copy_n(rgba.begin() + std::ptrdiff_t(4 * i), 3, rgba.begin() + std::ptrdiff_t(3 * i));
+        for (std::size_t i = 1; i < count; ++i) std::copy_n(&rgba[4 * i], 3, &rgba[3 * i]);
         return std::span(rgba).first(3 * count);
     }
 

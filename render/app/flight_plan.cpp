@@ -155,7 +155,6 @@ class Line {
 
 FlightPlan plan_along(const Line& line, const PlannedKey& usual, const LineFollowing& following) {
     constexpr double key_s = 2;
-    if (!(line.length() > 1)) throw Error(Fault::bad_data, "its line", "is shorter than 1 m", "a line to follow");
     const double wanted = std::ceil(line.length() / (key_s * following.speed_m_s));
     const double legs = std::clamp(wanted, 1.0, static_cast<double>(most_flight_keys - 1));
     const double step = line.length() / legs;
@@ -181,7 +180,9 @@ FlightPlan plan_of_line(const std::string& file, const PlannedKey& usual, const 
     const planet::Features features = planet::read_features(file);
     if (features.lines.size() != 1)
         throw Error(Fault::bad_data, file, "holds " + std::to_string(features.lines.size()) + " lines", "one line");
-    return plan_along(Line(features.lines.front()), usual, following);
+    const Line line(features.lines.front());
+    if (!(line.length() > 1)) throw Error(Fault::bad_data, file, "holds a line shorter than 1 m", "a line to follow");
+    return plan_along(line, usual, following);
 }
 
 FlightKey flight_key(const PlannedKey& key, const DrawnSurface& surface, About about) {

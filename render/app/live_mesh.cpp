@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "planet/geodesy/sun.h"
@@ -116,8 +117,10 @@ void LiveMesh::place_anew() {
 }
 
 double LiveMesh::pixel_deviation() const {
-    return std::max(segments_.ratio_max(), tiles_.residency().hidden_ratio) * coarsening_ *
-           options_.max_pixel_deviation;
+    const planet::Residency& r = tiles_.residency();
+    // Where nothing is missing, the split test itself is the bound: what segments know is for an eye that has moved since.
+    const double most = r.pending == 0 && r.damaged == 0 ? 1 : std::numeric_limits<double>::infinity();
+    return std::min(std::max(segments_.ratio_max(), r.hidden_ratio), most) * coarsening_ * options_.max_pixel_deviation;
 }
 
 double LiveMesh::deviation_m() const {
