@@ -8,6 +8,7 @@
 #include "planet/store/store_field.h"
 #include "planet/streaming/store_tiles.h"
 #include "render/app/render_options.h"
+#include "render/layers/draped_lines.h"
 #include "render/picture/camera.h"
 #include "render/picture/relief_patches.h"
 
@@ -28,6 +29,8 @@ struct DrawnSurface {
     double occluder_radius() const;
     /// The drawn ground at a unit geodetic normal, exaggeration and geoid included: metres above the ellipsoid.
     double ground(const glm::dvec3& normal) const;
+    /// What layers lie on in a part of a picture. Refers to this and to the segments.
+    DrapeGround for_layers(const planet::Segments& segments, const Camera& camera, const PicturePart& part) const;
     /// The camera of a picture: over the ground as it is drawn, exaggeration and geoid included, never below it.
     Camera camera(const RenderOptions& options) const;
 };

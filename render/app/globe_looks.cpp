@@ -39,6 +39,12 @@ void GlobeLooks::link(std::span<const Star> stars, std::span<const std::vector<s
     overlay_.emplace(show);
 }
 
+void GlobeLooks::set_layers(std::vector<const Layer*> layers, bool polygons) {
+    polygons_ = polygons;
+    layers_ = std::move(layers);
+    if (!layers_.empty() && !layer_pass_) layer_pass_.emplace();
+}
+
 void GlobeLooks::set_sky(const AtmosphereTables& tables, ViewTable view, planet::UtcTime time) {
     view.uniforms.sky_detail.w = static_cast<float>(texel_m_);
     air_ = view.uniforms;
@@ -68,10 +74,16 @@ void GlobeLooks::draw_opaque(const Frame& frame) {
     sky_->draw_air(frame.camera, frame.part);
 }
 
-void GlobeLooks::draw_blended(const Frame& frame) {
+void GlobeLooks::draw_blended(const Frame& frame, const Framebuffer& target) {
     sky_->bind(frame.camera, frame.part);
     overlay_->draw(frame.camera, frame.part);
     sky_->draw_stars(frame.camera, frame.part);
+    if (!layers_.empty())
+        layer_pass_->draw(layers_, {.camera = frame.camera,
+                                    .part = frame.part,
+                                    .pixel_scale = frame.pixel_scale,
+                                    .ground = frame.ground,
+                                    .target = target});
 }
 
 }  // namespace render

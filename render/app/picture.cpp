@@ -15,6 +15,7 @@
 #include "render/app/earth_store.h"
 #include "render/app/globe_looks.h"
 #include "render/app/imagery.h"
+#include "render/app/layer_data.h"
 #include "render/app/part_mesh.h"
 #include "render/app/steps.h"
 #include "render/gl/framebuffer.h"
@@ -46,6 +47,7 @@ class Painter {
           threads_(options.thread_count()),
           noise_(beside(threads_, [this] { return steps_.time("noise", [] { return make_noise_levels(); }); })),
           tables_(beside(threads_, [this] { return steps_.time("air", [] { return make_tables(); }); })),
+          layers_(steps_.time("layers", [&] { return LayerData::load(options); })),
           context_(steps_.time("context", [&] { return Context::create({.backend = options.backend}); })),
           earth_(options.earth),
           index_(user_checksum_index()),
@@ -66,7 +68,7 @@ class Painter {
             const PicturePart& part = parts_[i];
             if (part.x == 0) band.resize(static_cast<std::size_t>(camera_.width * part.height) * 3);
             upload_mesh(i);
-            paint_part(part, band);
+            paint_part(part, meshes_[i & 1].segments, band);
             options_.progress("drawing", static_cast<double>(i + 1) / static_cast<double>(parts_.size()));
             if (part.x + part.width == camera_.width) output.write(std::exchange(band, {}), part.height);
         }
@@ -101,6 +103,7 @@ class Painter {
         steps_.time("shaders", [&] { looks_.link(stars, noise, overlays_of(options_)); });
         const auto [tables, view] = air.get();
         looks_.set_sky(tables, view, options_.time);
+        looks_.set_layers(layers_.shown(options_), layers_.has_polygons());
         set_reversed_depth();
     }
 
@@ -127,7 +130,7 @@ class Painter {
         report_.pixel_deviation_max = std::max(report_.pixel_deviation_max, mesh.pixel_deviation_max);
     }
 
-    void paint_part(const PicturePart& part, std::vector<std::uint8_t>& band) {
+    void paint_part(const PicturePart& part, const planet::Segments& segments, std::vector<std::uint8_t>& band) {
         std::vector<std::uint8_t> pixels;
         steps_.time("draw", [&] {
             const int samples = options_.samples > 0 ? options_.samples
@@ -135,10 +138,11 @@ class Painter {
                                     ? 1
                                     : std::min(4, context_.limits().samples);
             if (!target_ || target_.width() != part.width || target_.height() != part.height)
-                target_ = Framebuffer(part.width, part.height, {.color_format = GL_RGBA8, .samples = samples});
+                target_ = Framebuffer(part.width, part.height, looks_.target_options(samples));
             target_.bind();
             target_.clear(0, 0, 0, 1);
-            looks_.draw({camera_, part, options_.exaggeration, patch_texture_});
+            DrapeGround ground = surface_.for_layers(segments, camera_, part);
+            looks_.draw({camera_, part, options_.exaggeration, patch_texture_, ground}, target_);
             pixels = target_.read_rgba8();
         });
         for (int y = 0; y < part.height; ++y) {
@@ -153,6 +157,8 @@ class Painter {
 
     void fill_report() {
         report_.tiles = mesher_.counts();
+        for (const LoadedLayer& layer : layers_.own())
+            report_.layers.push_back({layer.name, layer.features, layer.vertices});
         report_.damage = surface_.field.cache().damage();
         report_.eye_height_m = planet::height_from_ecef(wgs84, camera_.eye).m;
         report_.crs = "EPSG:4978";
@@ -199,6 +205,7 @@ class Painter {
     unsigned threads_;
     std::future<std::vector<std::vector<std::uint8_t>>> noise_;
     std::future<AtmosphereTables> tables_;
+    LayerData layers_;
     Context context_;
     LazyEarth earth_;
     ChecksumIndex index_;

@@ -27,6 +27,12 @@ struct PictureCentre {
     double deviation_m = 0;  ///< certified, of the triangle from the finest surface, exaggerated
 };
 
+/// A layer, as it is in its file.
+struct LayerReport {
+    std::string name;
+    std::size_t features = 0, vertices = 0;
+};
+
 /// What was drawn, for the report. Counts are of what was built for this view.
 struct PictureReport {
     std::uint64_t triangles = 0;
@@ -43,6 +49,7 @@ struct PictureReport {
     std::string crs;                      ///< of what is drawn, e.g. "EPSG:4979"
     std::string vertical_datum;
     std::vector<planet::SourceInfo> sources;
+    std::vector<LayerReport> layers;
     std::string backend;  ///< the way in that was taken, never "auto"
     std::string gl_version;
     std::string gl_renderer;
