@@ -22,6 +22,7 @@ struct Polygon {
 struct FeatureName {
     std::string text;
     glm::dvec2 place{0};  ///< x and y as of a vertex
+    bool of_point = false;
 };
 
 /// A vertex is (x, y, z): x and y in the CRS that was asked for, z in metres (as the file has it: of no particular

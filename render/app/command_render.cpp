@@ -57,10 +57,7 @@ void fill(Report& report, const RenderOptions& options, const PictureReport& pic
     report.set("crs", picture.crs);
     report.set("vertical_datum", picture.vertical_datum);
     report.set("sources", sources_json(picture.sources));
-    nlohmann::ordered_json layers = nlohmann::ordered_json::array();
-    for (const LayerReport& layer : picture.layers)
-        layers.push_back({{"name", layer.name}, {"features", layer.features}, {"vertices", layer.vertices}});
-    report.set("layers", layers);
+    report.set("layers", layers_json(picture.layers));
     report.set("backend", picture.backend);
     report.set("gl_version", picture.gl_version);
     report.set("gl_renderer", picture.gl_renderer);

@@ -10,6 +10,8 @@
 #include "render/app/imagery.h"
 #include "render/app/render_options.h"
 #include "render/gl/texture.h"
+#include "render/passes/labels.h"
+#include "render/passes/layer_meshes.h"
 #include "render/passes/layers.h"
 #include "render/passes/overlay.h"
 #include "render/passes/sky.h"
@@ -45,6 +47,7 @@ class GlobeLooks {
         const Texture& patches;
         DrapeGround& ground;     ///< what layers lie on
         double morph_reach = 0;  ///< see TerrainLook
+        bool relief = false;     ///< heights as colours instead of the imagery
         double pixel_scale = 1;  ///< of widths: below 1 where the picture is shown larger
     };
     /// Draws the meshes of terrain() and overlay(), and layers, into what is bound: the target.
@@ -60,6 +63,8 @@ class GlobeLooks {
     OverlayPass& overlay() { return *overlay_; }
 
   private:
+    TerrainLook look_of(const Frame& frame) const;
+
     Texture day_, night_, relief_;
     double texel_m_ = 0;
     SkyUniforms air_{};
@@ -68,7 +73,9 @@ class GlobeLooks {
     std::optional<OverlayPass> overlay_;
     std::vector<const Layer*> layers_;
     bool polygons_ = false;
-    std::optional<LayerPass> layer_pass_;  // once there are layers
+    std::optional<LayerPass> layer_pass_;     // once there are layers
+    std::optional<LayerMeshPass> mesh_pass_;  // once there are meshes
+    std::optional<LabelPass> label_pass_;     // once there are names
 };
 
 }  // namespace render

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "planet/elevation/features.h"
+#include "planet/exporters/mesh_file.h"
+#include "planet/geodesy/geoid.h"
 #include "render/app/data_path.h"
 
 namespace render {
@@ -16,11 +18,21 @@ constexpr LayerStyle coastline_style{
 constexpr LayerStyle border_style{
     .color{1.0f, 0.90f, 0.66f}, .width = 1.1, .opacity = 0.55, .fill = 0, .casing = false};
 
+constexpr glm::vec3 mesh_color(0.80f, 0.77f, 0.73f);  // clay
+
 LayerStyle style_of(const LayerOptions& options) {
-    return {.color = options.color.value_or(LayerStyle().color),
+    return {.color = options.color.value_or(mesh_color),
             .width = options.width,
             .opacity = options.opacity,
             .fill = options.fill};
+}
+
+LoadedLayer read_mesh_layer(const std::filesystem::path& file) {
+    planet::MeshReference reference;
+    const planet::SurfaceMesh mesh = planet::read_mesh(file.native(), &reference);
+    LoadedLayer loaded{file.stem().native(), {}, mesh.triangles.size(), mesh.vertices.size()};
+    loaded.layer.mesh.emplace(mesh, reference, planet::Geoid(data_file("egm96-15.pgm")), file.native());
+    return loaded;
 }
 
 LoadedLayer read_layer(const std::filesystem::path& file, const std::string& label = {}) {
@@ -30,6 +42,10 @@ LoadedLayer read_layer(const std::filesystem::path& file, const std::string& lab
     const planet::Features features = planet::read_features(file.native(), options);
     LoadedLayer loaded{file.stem().native(), {}, features.feature_count, features.vertex_count()};
     Layer& layer = loaded.layer;
+    for (const planet::FeatureName& name : features.names)
+        layer.names.push_back(
+            {name.text, planet::normal_from_geodetic(name.place.y * planet::degrees, name.place.x * planet::degrees),
+             name.of_point});
     for (const glm::dvec3& point : features.points) layer.points.add({&point, 1});
     for (const auto& line : features.lines) layer.lines.add(line);
     for (const planet::Polygon& polygon : features.polygons) {
@@ -53,7 +69,8 @@ LayerData LayerData::load(const RenderOptions& options, bool all_shipped) {
     if (all_shipped || options.shows(Overlay::coastlines))
         data.coastlines_ = read_shipped("coastlines.geojson", coastline_style);
     if (all_shipped || options.shows(Overlay::borders)) data.borders_ = read_shipped("borders.geojson", border_style);
-    for (const LayerOptions& layer : options.layers) data.own_.push_back(read_layer(layer.file, layer.label));
+    for (const LayerOptions& layer : options.layers)
+        data.own_.push_back(is_mesh(layer) ? read_mesh_layer(layer.file) : read_layer(layer.file, layer.label));
     return data;
 }
 
@@ -70,6 +87,12 @@ std::vector<const Layer*> LayerData::shown(const RenderOptions& options) {
 
 bool LayerData::has_polygons() const {
     return std::ranges::any_of(own_, [](const LoadedLayer& l) { return !l.layer.polygons.empty(); });
+}
+
+std::vector<LayerReport> LayerData::report() const {
+    std::vector<LayerReport> list;
+    for (const LoadedLayer& layer : own_) list.push_back({layer.name, layer.features, layer.vertices});
+    return list;
 }
 
 }  // namespace render

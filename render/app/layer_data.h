@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/app/layer_report.h"
 #include "render/app/render_options.h"
 #include "render/layers/layer.h"
 
@@ -12,7 +13,7 @@ namespace render {
 struct LoadedLayer {
     std::string name;  ///< of the file, without its folder and ending
     Layer layer;
-    std::size_t features = 0, vertices = 0;  ///< in the file
+    std::size_t features = 0, vertices = 0;  ///< in the file; of a mesh its triangles are features
 };
 
 /// What a picture's options name: shipped coastlines and borders, and the user's layers.
@@ -28,7 +29,10 @@ class LayerData {
     /// Whether any has polygons, shown or not.
     bool has_polygons() const;
 
-    std::vector<LoadedLayer>& own() { return own_; }
+    /// Exchanges the places of two of own().
+    void swap(std::size_t a, std::size_t b) { std::swap(own_[a], own_[b]); }
+    /// Of own().
+    std::vector<LayerReport> report() const;
     const std::vector<LoadedLayer>& own() const { return own_; }
 
   private:

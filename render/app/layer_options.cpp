@@ -22,7 +22,7 @@ constexpr glm::vec3 palette[] = {{1.00f, 0.80f, 0.00f}, {0.31f, 0.76f, 0.97f}, {
                                  {0.68f, 0.84f, 0.51f}, {0.93f, 0.56f, 0.86f}, {0.96f, 0.96f, 0.96f}};
 
 constexpr std::string_view keys[] = {"color", "width", "opacity", "fill", "label"};
-constexpr std::string_view accepted = "FILE,color=#ffcc00,width=2,opacity=0.8,fill=0.3,label=NAME";
+constexpr std::string_view accepted = "FILE,color=#ffcc00,width=2,opacity=0.8,fill=0.2,label=NAME";
 constexpr Range width_range{0.5, 64}, part_range{0, 1};
 
 glm::vec3 parse_color(std::string_view where, std::string_view text) {
@@ -40,9 +40,10 @@ std::string color_text(const glm::vec3& color) {
     return text;
 }
 
+/// Gives layers without a colour the next one of a palette.
 void choose_colors(std::vector<LayerOptions>& layers) {
     for (std::size_t i = 0; i < layers.size(); ++i)
-        if (!layers[i].color) layers[i].color = palette[i % std::size(palette)];
+        if (!layers[i].color && !is_mesh(layers[i])) layers[i].color = palette[i % std::size(palette)];
 }
 
 /// Where the next ",key=" begins, from a place on; npos: nowhere.
@@ -63,6 +64,13 @@ void set(LayerOptions& layer, std::string_view where, std::string_view key, cons
 }
 
 }  // namespace
+
+bool is_mesh(const LayerOptions& layer) {
+    std::string ending = layer.file.extension().native();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return ending == ".glb" || ending == ".ply" || ending == ".obj" || ending == ".stl";
+}
 
 LayerOptions parse_layer(std::string_view where, const std::string& text) {
     LayerOptions layer;
@@ -102,8 +110,8 @@ void add_layer_option(CLI::App& command, std::vector<LayerOptions>& layers) {
                 for (const std::string& text : texts) layers.push_back(parse_layer("--layer", text));
                 choose_colors(layers);
             },
-            "Points, lines and polygons on the ground: "
-            "FILE[,color=#ffcc00][,width=2][,opacity=0.8][,fill=0.3][,label=NAME]; many, later on top")
+            "Points, lines, polygons or a mesh on the ground: "
+            "FILE[,color=#ffcc00][,width=2][,opacity=0.8][,fill=0.2][,label=NAME]; many, later on top")
         ->type_name("FILE[,...]")
         ->allow_extra_args(false);
 }

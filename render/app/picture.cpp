@@ -142,7 +142,13 @@ class Painter {
             target_.bind();
             target_.clear(0, 0, 0, 1);
             DrapeGround ground = surface_.for_layers(segments, camera_, part);
-            looks_.draw({camera_, part, options_.exaggeration, patch_texture_, ground}, target_);
+            looks_.draw({.camera = camera_,
+                         .part = part,
+                         .exaggeration = options_.exaggeration,
+                         .patches = patch_texture_,
+                         .ground = ground,
+                         .relief = options_.shows(Overlay::relief)},
+                        target_);
             pixels = target_.read_rgba8();
         });
         for (int y = 0; y < part.height; ++y) {
@@ -157,8 +163,7 @@ class Painter {
 
     void fill_report() {
         report_.tiles = mesher_.counts();
-        for (const LoadedLayer& layer : layers_.own())
-            report_.layers.push_back({layer.name, layer.features, layer.vertices});
+        report_.layers = layers_.report();
         report_.damage = surface_.field.cache().damage();
         report_.eye_height_m = planet::height_from_ecef(wgs84, camera_.eye).m;
         report_.crs = "EPSG:4978";

@@ -9,6 +9,7 @@
 #include "planet/elevation/elevation_field.h"
 #include "planet/streaming/resident_tiles.h"
 #include "planet/terrain/ground.h"
+#include "render/app/layer_report.h"
 #include "render/app/render_options.h"
 
 namespace render {
@@ -25,12 +26,6 @@ struct PictureCentre {
     planet::Ground ground;   ///< what a query answers at that place: not exaggerated
     double range_m = 0;      ///< from the eye
     double deviation_m = 0;  ///< certified, of the triangle from the finest surface, exaggerated
-};
-
-/// A layer, as it is in its file.
-struct LayerReport {
-    std::string name;
-    std::size_t features = 0, vertices = 0;
 };
 
 /// What was drawn, for the report. Counts are of what was built for this view.

@@ -46,6 +46,7 @@ double ViewFrame::draw_moving(GlobeLooks& looks, const GlobeLooks::Frame& frame,
                 .patches = frame.patches,
                 .ground = frame.ground,
                 .morph_reach = frame.morph_reach,
+                .relief = frame.relief,
                 .pixel_scale = pixel_scale},
                moving_);
     gl().Finish();

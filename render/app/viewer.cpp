@@ -83,6 +83,7 @@ void ViewerSession::fill_report() {
     report_.deviation_max_m = mesh_->deviation_m();
     report_.pixel_deviation_max = mesh_->pixel_deviation();
     report_.view = render_line(resting_.value_or(options_of_pose(render_, *data_.surface, navigator_->pose())));
+    report_.layers = data_.layers.report();
     report_.damage = data_.surface->field.cache().damage();
 }
 
@@ -242,8 +243,13 @@ void ViewerSession::draw() {
     const Camera camera = resting_ ? data_.surface->camera(*resting_) : camera_;
     const PicturePart whole{0, 0, camera.width, camera.height};
     DrapeGround ground = data_.surface->for_layers(mesh_->segments(), camera, whole);
-    const GlobeLooks::Frame frame{
-        camera, whole, render_.exaggeration, mesh_->patches().texture(), ground, mesh_->morph_reach()};
+    const GlobeLooks::Frame frame{.camera = camera,
+                                  .part = whole,
+                                  .exaggeration = render_.exaggeration,
+                                  .patches = mesh_->patches().texture(),
+                                  .ground = ground,
+                                  .morph_reach = mesh_->morph_reach(),
+                                  .relief = render_.shows(Overlay::relief)};
     const bool complete = resting_ && mesh_->complete() && air_.is_for(camera.eye, render_.time);
     picture_new_ = false;
     worked_ = true;
@@ -488,6 +494,15 @@ void ViewerSession::act(Action action) {
             break;
         case show_graticule:
             toggle(Overlay::graticule);
+            break;
+        case show_coastlines:
+            toggle(Overlay::coastlines);
+            break;
+        case show_borders:
+            toggle(Overlay::borders);
+            break;
+        case show_relief:
+            toggle(Overlay::relief);
             break;
         case show_segments:
             toggle(Overlay::segments);

@@ -71,6 +71,7 @@ class ViewerSession {
     void fill_statistics();
     void fill_settings();
     void take_panel_changes();
+    void take_layer_changes();
     void notice(std::string text);
 
     const ViewerOptions& options_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 namespace render {
 
@@ -10,6 +11,8 @@ namespace {
 using planet::wgs84;
 
 constexpr double longest_piece_px = 3, least_side_px = 1;
+constexpr double crowded_px = 2;
+constexpr double lowest_ground_m = 600;
 constexpr double shortest_side_m = 0.02;  // near the eye sides are not cut any finer
 
 struct Vertex {
@@ -61,8 +64,14 @@ class Draper {
 
     void point(const glm::dvec3& normal) {
         if (hidden(foot(normal), 0, ground_.relief_m)) return;
-        if (const auto at = screen_from_ecef(camera_, ground_.point(normal)))
-            pieces_.push_back({glm::vec3(*at), glm::vec3(*at)});
+        const glm::dvec3 place = ground_.point(normal);
+        const auto at = screen_from_ecef(camera_, place);
+        if (!at || is_behind_planet(camera_.eye, place)) return;
+        // Of a crowd, those that would show: the first of each two pixels.
+        const glm::ivec2 square = glm::floor(glm::dvec2(*at) / crowded_px);
+        const auto key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(square.x)) << 32 |
+                         static_cast<std::uint32_t>(square.y);
+        if (taken_.insert(key).second) pieces_.push_back({glm::vec3(*at), glm::vec3(*at)});
     }
 
     void side(const Vertex& from, const Vertex& to, int depth) {
@@ -75,7 +84,7 @@ class Draper {
                                          : length < shortest_side_m;
         constexpr int deepest = 40;
         if (short_enough || length < shortest_side_m || depth == deepest) {
-            if (a && b) pieces_.push_back({glm::vec3(*a), glm::vec3(*b)});
+            if (a && b && !is_behind_planet(camera_.eye, middle)) pieces_.push_back({glm::vec3(*a), glm::vec3(*b)});
             return;
         }
         const Vertex between = vertex(middle_of_side(from.normal, to.normal));
@@ -87,6 +96,7 @@ class Draper {
     DrapeGround& ground_;
     planet::CullingTest culling_;
     std::vector<ScreenPiece>& pieces_;
+    std::unordered_set<std::uint64_t> taken_;  // squares with a point
 };
 
 }  // namespace
@@ -94,6 +104,15 @@ class Draper {
 glm::dvec3 DrapeGround::point(const glm::dvec3& normal) {
     if (const auto at = drawn.point_at(normal)) return *at;
     return planet::ecef_from_normal(wgs84, normal, {height(normal)});
+}
+
+bool is_behind_planet(const glm::dvec3& eye, const glm::dvec3& point) {
+    const glm::dvec3 axes = glm::dvec3(wgs84.a, wgs84.a, wgs84.b) - lowest_ground_m;
+    const glm::dvec3 from = eye / axes, way = point / axes - from;
+    const double nearest = -glm::dot(from, way) / glm::dot(way, way);
+    if (!(nearest > 0 && nearest < 1)) return false;
+    const glm::dvec3 there = from + nearest * way;
+    return glm::dot(there, there) < 1;
 }
 
 std::optional<glm::dvec3> screen_from_ecef(const Camera& camera, const glm::dvec3& point) {

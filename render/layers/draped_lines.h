@@ -33,6 +33,10 @@ struct ScreenPiece {
 /// @param camera of the whole picture, so that all its parts have the same pieces
 void drape(const GeodesicLines& lines, const Camera& camera, DrapeGround& ground, std::vector<ScreenPiece>& pieces);
 
+/// Behind the ellipsoid, or one as far below it as the lowest ground: on the other side of the limb, to less than a pixel
+/// of what is seen from space.
+bool is_behind_planet(const glm::dvec3& eye, const glm::dvec3& point);
+
 /// Where a point is on the picture; nothing behind the eye.
 std::optional<glm::dvec3> screen_from_ecef(const Camera& camera, const glm::dvec3& point);
 

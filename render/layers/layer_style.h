@@ -5,11 +5,13 @@
 
 namespace render {
 
+inline constexpr double label_size_px = 15;
+
 struct LayerStyle {
     glm::vec3 color{1, 0.8f, 0};  ///< sRGB as it is shown, 0..1
     double width = 2;             ///< pixels, of lines and outlines
     double opacity = 1;           ///< 0..1
-    double fill = 0.3;            ///< 0..1: what of the opacity the inside of a polygon has
+    double fill = 0.2;            ///< 0..1: what of the opacity the inside of a polygon has
     bool casing = true;           ///< a dark rim, which parts light lines from light ground
 };
 

@@ -21,13 +21,29 @@ in float orthometric;
 flat in int layer;
 layout(location = 0) out vec4 color;
 
+#ifdef RELIEF
+/// Linear colour of a height, m: the sea, then green lowlands over ochre to white. The tints of school atlases, paler.
+vec3 height_color(float height) {
+    const vec3 sea = vec3(0.13, 0.24, 0.33);
+    const vec3 tints[6] = vec3[](vec3(0.17, 0.30, 0.17), vec3(0.38, 0.45, 0.21), vec3(0.60, 0.48, 0.24), vec3(0.42, 0.26, 0.14),
+                                 vec3(0.45, 0.38, 0.34), vec3(0.82, 0.83, 0.85));
+    const float tops[6] = float[](0.0, 400.0, 1200.0, 2500.0, 4000.0, 6000.0);
+    vec3 tint = tints[0];
+    for (int i = 1; i < 6; ++i) tint = mix(tint, tints[i], clamp((height - tops[i - 1]) / (tops[i] - tops[i - 1]), 0.0, 1.0));
+    return mix(sea, tint, smoothstep(-0.5, 0.5, height - 0.5));
+}
+#endif
+
 void main() {
     vec3 place = eye + view;
     SurfaceInput s;
     s.view = view;
     s.normal = normalize(vec3(place.xy, place.z * shape.x));
     s.footprint = length(view) * pixel_angle;
-#ifdef FROM_AFAR
+#ifdef RELIEF
+    vec4 day = vec4(height_color(orthometric), 0.0);
+    s.imagery = day.rgb;
+#elif defined(FROM_AFAR)
     vec4 day = texture(day_cube, s.normal);
     s.imagery = day.rgb;
 #else
@@ -37,7 +53,11 @@ void main() {
     s.imagery = day.rgb * (1.0 + 0.22 * grain.w);
 #endif
     s.water = day.a;
+#ifdef RELIEF
+    s.night = vec3(0.0);
+#else
     s.night = texture(night_cube, s.normal).rgb;
+#endif
     vec3 offset = texture(relief_cube, s.normal).xyz * 0.5;
 #ifdef PATCHED
     vec2 dx = dFdx(patch_uv), dy = dFdy(patch_uv);

@@ -198,7 +198,8 @@ class FeatureCollector {
     }
     void name_feature(const std::string& text) {
         if (text.empty()) return;
-        if (const auto place = place_of_feature()) features_.names.push_back({text, *place});
+        const bool of_point = features_.points.size() > points_before_;
+        if (const auto place = place_of_feature()) features_.names.push_back({text, *place, of_point});
     }
 
     Features take() {

@@ -1,0 +1,34 @@
+#pragma once
+// Imported meshes, shaded as the terrain is, over the terrain that they stand for.
+
+#include <map>
+#include <span>
+
+#include "render/layers/layer.h"
+#include "render/passes/terrain.h"
+
+namespace render {
+
+class LayerMeshPass {
+  public:
+    /// With the context that is current.
+    LayerMeshPass();
+
+    /// Draws the meshes of layers, with depth, after the terrain. Textures and the uniform block of the sky are bound.
+    void draw(std::span<const Layer* const> layers, const Camera& camera, const PicturePart& part,
+              const TerrainLook& look);
+
+  private:
+    struct OnGpu {
+        double exaggeration = 0;
+        VertexArray array;
+        Buffer vertices, indices;
+        GLsizei count = 0;
+    };
+    const OnGpu& on_gpu(const PlacedMesh& mesh, double exaggeration);
+
+    Program program_;
+    std::map<const PlacedMesh*, OnGpu> meshes_;
+};
+
+}  // namespace render
