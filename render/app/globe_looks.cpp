@@ -39,8 +39,8 @@ void GlobeLooks::link(std::span<const Star> stars, std::span<const std::vector<s
     overlay_.emplace(show);
 }
 
-void GlobeLooks::set_layers(std::vector<const Layer*> layers, bool polygons) {
-    polygons_ = polygons;
+void GlobeLooks::set_layers(std::vector<const Layer*> layers, bool stencil) {
+    stencil_ = stencil;
     layers_ = std::move(layers);
     if (!layers_.empty() && !layer_pass_) layer_pass_.emplace();
     const bool meshes = std::ranges::any_of(layers_, [](const Layer* layer) { return layer->mesh.has_value(); });

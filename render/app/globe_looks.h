@@ -29,11 +29,12 @@ class GlobeLooks {
     void link(std::span<const Star> stars, std::span<const std::vector<std::uint8_t>> noise, OverlayPass::Show show);
     /// The air about an eye. @param view of make_view_table()
     void set_sky(const AtmosphereTables& tables, ViewTable view, planet::UtcTime time);
-    /// What lies over the terrain, the lowest first. All stay as long as this. @param polygons whether there may ever be any
-    void set_layers(std::vector<const Layer*> layers, bool polygons);
+    /// What lies over the terrain, the lowest first. All stay as long as this. @param stencil whether
+    /// there may ever be polygons or meshes
+    void set_layers(std::vector<const Layer*> layers, bool stencil);
     /// Of what is to be drawn into.
     Framebuffer::Options target_options(int samples) const {
-        return {.color_format = GL_RGBA8, .samples = samples, .stencil = polygons_};
+        return {.color_format = GL_RGBA8, .samples = samples, .stencil = stencil_};
     }
     void set_overlay(OverlayPass::Show show) { overlay_.emplace(show); }
 
@@ -72,7 +73,7 @@ class GlobeLooks {
     std::optional<SkyPass> sky_;
     std::optional<OverlayPass> overlay_;
     std::vector<const Layer*> layers_;
-    bool polygons_ = false;
+    bool stencil_ = false;
     std::optional<LayerPass> layer_pass_;     // once there are layers
     std::optional<LayerMeshPass> mesh_pass_;  // once there are meshes
     std::optional<LabelPass> label_pass_;     // once there are names

@@ -18,7 +18,7 @@ constexpr LayerStyle coastline_style{
 constexpr LayerStyle border_style{
     .color{1.0f, 0.90f, 0.66f}, .width = 1.1, .opacity = 0.55, .fill = 0, .casing = false};
 
-constexpr glm::vec3 mesh_color(0.80f, 0.77f, 0.73f);  // clay
+constexpr glm::vec3 mesh_color(0.58f, 0.54f, 0.49f);  // clay
 
 LayerStyle style_of(const LayerOptions& options) {
     return {.color = options.color.value_or(mesh_color),
@@ -85,8 +85,8 @@ std::vector<const Layer*> LayerData::shown(const RenderOptions& options) {
     return list;
 }
 
-bool LayerData::has_polygons() const {
-    return std::ranges::any_of(own_, [](const LoadedLayer& l) { return !l.layer.polygons.empty(); });
+bool LayerData::needs_stencil() const {
+    return std::ranges::any_of(own_, [](const LoadedLayer& l) { return !l.layer.polygons.empty() || l.layer.mesh; });
 }
 
 std::vector<LayerReport> LayerData::report() const {

@@ -26,8 +26,8 @@ class LayerData {
 
     /// Those to draw, the lowest first, as the options say: they have the same layers in the same order.
     std::vector<const Layer*> shown(const RenderOptions& options);
-    /// Whether any has polygons, shown or not.
-    bool has_polygons() const;
+    /// Whether any has polygons or a mesh, shown or not.
+    bool needs_stencil() const;
 
     /// Exchanges the places of two of own().
     void swap(std::size_t a, std::size_t b) { std::swap(own_[a], own_[b]); }

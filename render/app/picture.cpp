@@ -103,7 +103,7 @@ class Painter {
         steps_.time("shaders", [&] { looks_.link(stars, noise, overlays_of(options_)); });
         const auto [tables, view] = air.get();
         looks_.set_sky(tables, view, options_.time);
-        looks_.set_layers(layers_.shown(options_), layers_.has_polygons());
+        looks_.set_layers(layers_.shown(options_), layers_.needs_stencil());
         set_reversed_depth();
     }
 

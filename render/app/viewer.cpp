@@ -372,7 +372,7 @@ void ViewerSession::set_exaggeration(double factor) {
 }
 
 void ViewerSession::show_layers() {
-    looks_.set_layers(data_.layers.shown(render_), data_.layers.has_polygons());
+    looks_.set_layers(data_.layers.shown(render_), data_.layers.needs_stencil());
     look_changed_ = true;
 }
 

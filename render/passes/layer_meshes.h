@@ -1,6 +1,7 @@
 #pragma once
 // Imported meshes, shaded as the terrain is, over the terrain that they stand for.
 
+#include <functional>
 #include <map>
 #include <span>
 
@@ -14,7 +15,8 @@ class LayerMeshPass {
     /// With the context that is current.
     LayerMeshPass();
 
-    /// Draws the meshes of layers, with depth, after the terrain. Textures and the uniform block of the sky are bound.
+    /// Draws the meshes of layers, with depth, after the terrain, into what is bound and has a
+    /// stencil. Textures and the uniform block of the sky are bound.
     void draw(std::span<const Layer* const> layers, const Camera& camera, const PicturePart& part,
               const TerrainLook& look);
 
@@ -27,7 +29,10 @@ class LayerMeshPass {
     };
     const OnGpu& on_gpu(const PlacedMesh& mesh, double exaggeration);
 
-    Program program_;
+    void write_own_depth(const std::function<void()>& triangles);
+
+    Program program_, nothing_;
+    VertexArray no_vertices_;
     std::map<const PlacedMesh*, OnGpu> meshes_;
 };
 

@@ -68,7 +68,7 @@ void LayerPass::cover(const Pieces& pieces, double half_width, double opacity, c
     line_.set("part", glm::vec4(view.part.x, view.part.y, view.part.width, view.part.height));
     line_.set("half_width", static_cast<float>(half_width));
     line_.set("opacity", static_cast<float>(opacity));
-    line_.set("pixel_slack", static_cast<float>(1 - 1.5 / view.camera.focal_px));
+    line_.set("pixel_slack", static_cast<float>(1 - (1.5 + half_width) / view.camera.focal_px));
     gl().BlendEquation(GL_MAX);
     pieces.array.bind();
     gl().DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, pieces.count);

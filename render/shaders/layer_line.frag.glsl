@@ -8,7 +8,7 @@ layout(binding = 0) uniform sampler2D ground_depth;
 uniform vec4 part;
 uniform float half_width;
 uniform float opacity;
-uniform float pixel_slack;  ///< 1 - a pixel's angle, rad: what a place may seem farther than it is
+uniform float pixel_slack;  ///< 1 - the angle of half its width, rad: what a place may seem farther than it is
 
 in vec2 pixel;
 flat in vec3 start;

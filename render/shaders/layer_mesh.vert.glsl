@@ -16,7 +16,7 @@ void main() {
     view = view_from_grid();
     gl_Position = clip_from_ecef * vec4(view, 1.0);
     float w = gl_Position.w;
-    if (w > 0.0) gl_Position.z *= w / (w - min(lift, 0.02 * w));
+    if (w > 0.0) gl_Position.z *= w / (w - min(lift, 0.03 * w));
     ground = normal;
     orthometric = height;
 }

@@ -22,15 +22,16 @@ flat in int layer;
 layout(location = 0) out vec4 color;
 
 #ifdef RELIEF
-/// Linear colour of a height, m: the sea, then green lowlands over ochre to white. The tints of school atlases, paler.
-vec3 height_color(float height) {
-    const vec3 sea = vec3(0.13, 0.24, 0.33);
-    const vec3 tints[6] = vec3[](vec3(0.17, 0.30, 0.17), vec3(0.38, 0.45, 0.21), vec3(0.60, 0.48, 0.24), vec3(0.42, 0.26, 0.14),
-                                 vec3(0.45, 0.38, 0.34), vec3(0.82, 0.83, 0.85));
-    const float tops[6] = float[](0.0, 400.0, 1200.0, 2500.0, 4000.0, 6000.0);
+/// Linear colour of a height, m: the sea, then green lowlands over ochre to white, as in atlases. Shores are the imagery's,
+/// for from afar triangles are larger than bays. @param water 0..1
+vec3 height_color(float height, float water) {
+    const vec3 sea = vec3(0.055, 0.125, 0.205);
+    const vec3 tints[6] = vec3[](vec3(0.070, 0.150, 0.062), vec3(0.175, 0.210, 0.070), vec3(0.330, 0.230, 0.085),
+                                 vec3(0.230, 0.110, 0.048), vec3(0.260, 0.190, 0.160), vec3(0.720, 0.730, 0.760));
+    const float tops[6] = float[](0.0, 350.0, 1100.0, 2400.0, 3800.0, 5500.0);
     vec3 tint = tints[0];
     for (int i = 1; i < 6; ++i) tint = mix(tint, tints[i], clamp((height - tops[i - 1]) / (tops[i] - tops[i - 1]), 0.0, 1.0));
-    return mix(sea, tint, smoothstep(-0.5, 0.5, height - 0.5));
+    return mix(tint, sea, smoothstep(0.35, 0.65, water));
 }
 #endif
 
@@ -41,7 +42,7 @@ void main() {
     s.normal = normalize(vec3(place.xy, place.z * shape.x));
     s.footprint = length(view) * pixel_angle;
 #ifdef RELIEF
-    vec4 day = vec4(height_color(orthometric), 0.0);
+    vec4 day = vec4(height_color(orthometric, texture(day_cube, s.normal).a), 0.0);
     s.imagery = day.rgb;
 #elif defined(FROM_AFAR)
     vec4 day = texture(day_cube, s.normal);

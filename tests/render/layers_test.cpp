@@ -92,10 +92,8 @@ TEST(Drape, PiecesFollowOneAnotherAndTheGeodesic) {
     const auto pieces = draped({{-170, 30, 0}, {-120, 45, 0}}, camera);
     ASSERT_GT(pieces.size(), 30u);
     const planet::Geodesics geodesics(wgs84);
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        EXPECT_LE(glm::distance(glm::vec2(pieces[i].a), glm::vec2(pieces[i].b)), 3.001f);
-        if (i > 0) EXPECT_EQ(pieces[i].a, pieces[i - 1].b);
-    }
+    for (const ScreenPiece& p : pieces) EXPECT_LE(glm::distance(glm::vec2(p.a), glm::vec2(p.b)), 3.001f);
+    for (std::size_t i = 1; i < pieces.size(); ++i) EXPECT_EQ(pieces[i].a, pieces[i - 1].b);
     const auto along =
         geodesics.points_along({30 * degrees, -170 * degrees, {}}, {45 * degrees, -120 * degrees, {}}, 9);
     for (const planet::GeodesicPoint& p : along) {

@@ -38,6 +38,7 @@ void set_style(float scale) {
     style.WindowRounding = style.FrameRounding = style.GrabRounding = 4;
     style.WindowBorderSize = 0;
     style.GrabMinSize = 12;
+    style.ScrollbarSize = 8;
     style.ScaleAllSizes(scale);
     ImVec4* c = style.Colors;
     c[ImGuiCol_Text] = color(ink);
@@ -262,7 +263,7 @@ void PanelDrawing::draw_settings(Panels& panels) {
         ImGui::TextUnformatted(name);
         char text[32];
         std::snprintf(text, sizeof text, format, static_cast<double>(value));
-        ImGui::SameLine(unit(288) - ImGui::CalcTextSize(text).x);
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(text).x);
         ImGui::TextDisabled("%s", text);
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(unit(8), 0));
         ImGui::SetNextItemWidth(-1);
@@ -297,7 +298,7 @@ void PanelDrawing::draw_layer_rows(std::vector<LayerRow>& rows) {
         ImGui::PushStyleColor(ImGuiCol_CheckMark, ImVec4(row.color[0], row.color[1], row.color[2], 1));
         row.changed |= ImGui::Checkbox("##on", &row.on);
         ImGui::PopStyleColor();
-        ImGui::SameLine();
+        ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float height = ImGui::GetFrameHeight();
         ImGui::PushClipRect(at, {at.x + unit(88), at.y + height}, true);

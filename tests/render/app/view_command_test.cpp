@@ -193,6 +193,9 @@ INSTANTIATE_TEST_SUITE_P(
         "--at 37.58,-105.49 --range 12km --heading 30 --pitch -20 --show coastlines,relief "
         "--layer track.geojson,width=3,opacity=0.8,label=name"));
 
+/// Where the only layer's row is in the panel, pixels of the window.
+constexpr glm::ivec2 layer_row_box{43, 377}, layer_row_slider{190, 377};
+
 // The panel's box of the only layer: off, it is no longer in the line; on, it is; its slider changes the opacity.
 TEST_F(ViewCommand, ThePanelSwitchesLayers) {
     std::ofstream(folder_ / "track.geojson") << track;
