@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <limits>
 
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/sun.h"
@@ -47,7 +48,7 @@ class Painter {
           threads_(options.thread_count()),
           noise_(beside(threads_, [this] { return steps_.time("noise", [] { return make_noise_levels(); }); })),
           tables_(beside(threads_, [this] { return steps_.time("air", [] { return make_tables(); }); })),
-          layers_(steps_.time("layers", [&] { return LayerData::load(options); })),
+          layers_read_(beside(threads_, [this] { return steps_.time("layers", [&] { return load_layers(); }); })),
           context_(steps_.time("context", [&] { return Context::create({.backend = options.backend}); })),
           earth_(options.earth),
           index_(user_checksum_index()),
@@ -84,6 +85,11 @@ class Painter {
         return open_earth_store(options_.earth, earth_, index_, options_.progress);
     }
 
+    LayerData load_layers() {
+        if (!options_.layers.empty()) options_.progress("reading layers", std::numeric_limits<double>::quiet_NaN());
+        return LayerData::load(options_);
+    }
+
     void open_looks() {
         auto air = beside(threads_, [this] {
             const AtmosphereTables tables = tables_.get();
@@ -103,6 +109,7 @@ class Painter {
         steps_.time("shaders", [&] { looks_.link(stars, noise, overlays_of(options_)); });
         const auto [tables, view] = air.get();
         looks_.set_sky(tables, view, options_.time);
+        layers_ = layers_read_.get();
         looks_.set_layers(layers_.shown(options_), layers_.needs_stencil());
         set_reversed_depth();
     }
@@ -210,6 +217,7 @@ class Painter {
     unsigned threads_;
     std::future<std::vector<std::vector<std::uint8_t>>> noise_;
     std::future<AtmosphereTables> tables_;
+    std::future<LayerData> layers_read_;
     LayerData layers_;
     Context context_;
     LazyEarth earth_;

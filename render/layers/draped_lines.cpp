@@ -11,7 +11,7 @@ namespace {
 using planet::wgs84;
 
 constexpr double longest_piece_px = 3, least_side_px = 1;
-constexpr double crowded_px = 2;
+constexpr double crowded_px = 4;
 constexpr double lowest_ground_m = 600;
 constexpr double shortest_side_m = 0.02;  // near the eye sides are not cut any finer
 
@@ -63,15 +63,21 @@ class Draper {
     }
 
     void point(const glm::dvec3& normal) {
-        if (hidden(foot(normal), 0, ground_.relief_m)) return;
-        const glm::dvec3 place = ground_.point(normal);
-        const auto at = screen_from_ecef(camera_, place);
-        if (!at || is_behind_planet(camera_.eye, place)) return;
-        // Of a crowd, those that would show: the first of each two pixels.
-        const glm::ivec2 square = glm::floor(glm::dvec2(*at) / crowded_px);
-        const auto key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(square.x)) << 32 |
-                         static_cast<std::uint32_t>(square.y);
-        if (taken_.insert(key).second) pieces_.push_back({glm::vec3(*at), glm::vec3(*at)});
+        const glm::dvec3 below = foot(normal);
+        if (hidden(below, 0, ground_.relief_m) || is_behind_planet(camera_.eye, below)) return;
+        const auto near = screen_from_ecef(camera_, below);
+        if (!near || !first_in_square(glm::dvec2(*near))) return;
+        if (const auto at = screen_from_ecef(camera_, ground_.point(normal)))
+            pieces_.push_back({glm::vec3(*at), glm::vec3(*at)});
+    }
+
+    /// Of a crowd, those that would show.
+    bool first_in_square(const glm::dvec2& at) {
+        const glm::ivec2 square(glm::floor(at / crowded_px));
+        return taken_
+            .insert(static_cast<std::uint64_t>(static_cast<std::uint32_t>(square.x)) << 32 |
+                    static_cast<std::uint32_t>(square.y))
+            .second;
     }
 
     void side(const Vertex& from, const Vertex& to, int depth) {

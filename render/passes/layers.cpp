@@ -4,7 +4,7 @@ namespace render {
 
 namespace {
 
-constexpr double casing_px = 1.2, casing_opacity = 0.45, point_radius_px = 4.5;
+constexpr double casing_px = 1.2, casing_opacity = 0.45, point_radius_widths = 2.25;
 constexpr glm::vec3 casing_color(0.03f, 0.04f, 0.06f);
 constexpr int outside = 128;  // the stencil's middle: places may lie in fewer walls than the eye
 
@@ -34,7 +34,8 @@ void LayerPass::draw(std::span<const Layer* const> layers, const View& view) {
 // What overlaps counts once: a layer's alpha is gathered in that of the picture, and then its colour blended with it.
 void LayerPass::draw(const Layer& layer, const View& view) {
     const LayerStyle& style = layer.style;
-    const double line = 0.5 * style.width * view.pixel_scale, point = point_radius_px * view.pixel_scale;
+    const double line = 0.5 * style.width * view.pixel_scale,
+                 point = point_radius_widths * style.width * view.pixel_scale;
     const Pieces lines = drape(layer.lines, view), points = drape(layer.points, view);
     if (style.casing) {
         begin_alpha(0);
