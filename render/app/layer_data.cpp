@@ -24,14 +24,19 @@ LayerStyle style_of(const LayerOptions& options) {
     return {.color = options.color.value_or(mesh_color),
             .width = options.width,
             .opacity = options.opacity,
-            .fill = options.fill};
+            .fill = options.fill,
+            .own_colors = !options.color};
 }
 
 LoadedLayer read_mesh_layer(const std::filesystem::path& file) {
     planet::MeshReference reference;
-    const planet::SurfaceMesh mesh = planet::read_mesh(file.native(), &reference);
+    planet::MeshLooks looks;
+    const planet::SurfaceMesh mesh = planet::read_mesh(file.native(), &reference, &looks);
+    // glTF says that colours of vertices are linear; other formats have them as they are shown.
+    if (planet::mesh_format(file.native()) != planet::MeshFormat::glb)
+        for (glm::vec4& color : looks.colors) color = glm::vec4(linear_from_srgb(glm::vec3(color)), color.a);
     LoadedLayer loaded{file.stem().native(), {}, mesh.triangles.size(), mesh.vertices.size()};
-    loaded.layer.mesh.emplace(mesh, reference, planet::Geoid(data_file("egm96-15.pgm")), file.native());
+    loaded.layer.mesh.emplace(mesh, reference, looks.colors, planet::Geoid(data_file("egm96-15.pgm")), file.native());
     return loaded;
 }
 

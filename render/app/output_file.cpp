@@ -65,7 +65,8 @@ void unlist_temporary(const std::string& path) {
 
 }  // namespace
 
-OutputFile::OutputFile(std::string where, fs::path target) : where_(std::move(where)), target_(std::move(target)) {
+OutputFile::OutputFile(std::string where, fs::path target, fs::path known_as)
+    : where_(std::move(where)), target_(std::move(target)), known_as_(std::move(known_as)) {
     if (target_.empty()) throw planet::Error(planet::Fault::bad_usage, where_, "empty file name", "a path");
     std::error_code ignored;
     const fs::file_status status = fs::status(target_, ignored);
@@ -117,7 +118,8 @@ void OutputFile::commit(std::string_view bytes) {
 
 void OutputFile::fail(int error) const {
     throw planet::Error(planet::Fault::bad_usage, where_,
-                        shown(target_.native()) + " cannot be written: " + std::generic_category().message(error),
+                        shown((known_as_.empty() ? target_ : known_as_).native()) +
+                            " cannot be written: " + std::generic_category().message(error),
                         "a file in a folder that exists and can be written");
 }
 

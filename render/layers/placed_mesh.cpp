@@ -54,20 +54,23 @@ std::function<NormalPosition(const glm::dvec3&)> placement(const MeshReference& 
 
 }  // namespace
 
-PlacedMesh::PlacedMesh(const planet::SurfaceMesh& mesh, const MeshReference& reference, const planet::Geoid& geoid,
-                       const std::string& file)
-    : triangles_(mesh.triangles) {
+PlacedMesh::PlacedMesh(const planet::SurfaceMesh& mesh, const MeshReference& reference,
+                       std::span<const glm::vec4> colors, const planet::Geoid& geoid, const std::string& file)
+    : has_colors_(!colors.empty()), triangles_(mesh.triangles) {
     const auto place = placement(reference, file);
     // Positions about the planet's centre have ellipsoidal heights, whatever those of the source were.
     const bool ellipsoidal = reference.frame == MeshFrame::ecef || reference.frame == MeshFrame::enu ||
                              reference.vertical_datum == "ellipsoid";
     places_.reserve(mesh.vertices.size());
-    for (const glm::dvec3& v : mesh.vertices) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const glm::dvec3& v = mesh.vertices[i];
         const NormalPosition at = place(v);
         if (!(std::abs(at.h.m) < 1e5) || !std::isfinite(at.normal.x))
             throw Error(Fault::bad_data, file, "has vertices that are not on the Earth's ground", accepted);
         const double undulation = geoid.undulation(at.normal).m;
-        places_.push_back({at.normal, ellipsoidal ? at.h.m - undulation : at.h.m, undulation});
+        const glm::u16vec4 color(has_colors_ ? 65535.0f * glm::clamp(colors[i], 0.0f, 1.0f) + 0.5f : glm::vec4(0));
+        places_.push_back(
+            {at.normal, ellipsoidal ? at.h.m - undulation : at.h.m, undulation, {color.r, color.g, color.b, color.a}});
     }
 }
 
@@ -87,7 +90,7 @@ std::vector<PlacedMesh::Vertex> PlacedMesh::vertices(double exaggeration) const 
         const double length = glm::length(normals[i]);
         list.push_back({planet::grid_from_ecef(points[i]),
                         glm::vec3(length > 0 ? normals[i] / length : places_[i].normal),
-                        static_cast<float>(places_[i].height)});
+                        static_cast<float>(places_[i].height), places_[i].color});
     }
     return list;
 }

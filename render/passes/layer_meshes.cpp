@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace render {
 
@@ -11,11 +10,6 @@ namespace {
 /// What a mesh and the terrain may be off along the view, a coarse one while the eye moves, too: nearer than that it is the
 /// mesh that is seen. Not more than a part of the distance.
 constexpr double lift_m = 500;
-
-glm::vec3 linear_from_srgb(const glm::vec3& c) {
-    const auto linear = [](float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); };
-    return {linear(c.r), linear(c.g), linear(c.b)};
-}
 
 }  // namespace
 
@@ -36,7 +30,12 @@ const LayerMeshPass::OnGpu& LayerMeshPass::on_gpu(const PlacedMesh& mesh, double
     const Attribute attributes[] = {grid[0],
                                     grid[1],
                                     {.location = 2, .components = 3, .offset = offsetof(PlacedMesh::Vertex, normal)},
-                                    {.location = 3, .components = 1, .offset = offsetof(PlacedMesh::Vertex, height)}};
+                                    {.location = 3, .components = 1, .offset = offsetof(PlacedMesh::Vertex, height)},
+                                    {.location = 4,
+                                     .components = 4,
+                                     .type = GL_UNSIGNED_SHORT,
+                                     .offset = offsetof(PlacedMesh::Vertex, color),
+                                     .conversion = Attribute::Conversion::normalized}};
     kept.array.set_vertices(0, kept.vertices, sizeof(PlacedMesh::Vertex), attributes);
     kept.array.set_indices(kept.indices);
     return kept;
@@ -66,6 +65,7 @@ void LayerMeshPass::draw(std::span<const Layer* const> layers, const Camera& cam
     for (const Layer* layer : layers) {
         if (!layer->mesh) continue;
         const OnGpu& mesh = on_gpu(*layer->mesh, look.exaggeration);
+        program_.set("own_colors", static_cast<GLint>(layer->style.own_colors && layer->mesh->has_colors()));
         program_.set("paint", glm::vec4(linear_from_srgb(layer->style.color), layer->style.opacity));
         const auto triangles = [&] {
             mesh.array.bind();

@@ -7,11 +7,13 @@
 uniform vec3 eye;           ///< ecef, m, rounded
 uniform vec2 shape;         ///< (a/b)^2, the polar stretch of normals; exaggeration
 uniform float pixel_angle;  ///< rad
+uniform bool own_colors;
 uniform vec4 paint;         ///< linear colour, opacity
 
 in vec3 view;
 in vec3 ground;
 in float orthometric;
+in vec3 own_color;
 layout(location = 0) out vec4 color;
 
 void main() {
@@ -20,7 +22,7 @@ void main() {
     s.view = view;
     s.normal = normalize(vec3(place.xy, place.z * shape.x));
     s.terrain_normal = normalize(ground);
-    s.imagery = paint.rgb;
+    s.imagery = own_colors ? own_color : paint.rgb;
     s.night = vec3(0.0);
     s.water = 0.0;
     s.height = orthometric;
