@@ -14,7 +14,7 @@ namespace {
 const FeatureDriver& driver() {
     using Factory = const FeatureDriver* (*)();
     static const FeatureDriver* const found = reinterpret_cast<Factory>(
-        module_symbol("octaglobe_gdal", "octaglobe_gdal_features_1", "reading vector files"))();
+        module_symbol("octaglobe_gdal", "octaglobe_gdal_features_2", "reading vector files"))();
     return *found;
 }
 

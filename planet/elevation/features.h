@@ -18,12 +18,22 @@ struct Polygon {
     std::vector<std::vector<glm::dvec3>> holes;
 };
 
+/// What a feature is called, and where: at its point, its longest line's middle vertex, its largest polygon's centroid.
+struct FeatureName {
+    std::string text;
+    glm::dvec2 place{0};  ///< x and y as of a vertex
+    bool of_point = false;
+};
+
 /// A vertex is (x, y, z): x and y in the CRS that was asked for, z in metres (as the file has it: of no particular
 /// vertical datum), NaN where the file has none. x and y are finite.
 struct Features {
     std::vector<glm::dvec3> points;
     std::vector<std::vector<glm::dvec3>> lines;  ///< at least two vertices each
     std::vector<Polygon> polygons;
+    std::vector<FeatureName>
+        names;                      ///< with FeatureOptions::name_field, of features that have one; in the file's order
+    std::size_t feature_count = 0;  ///< in the file, those without a place too
 
     /// Of all of them; the repeated last vertices of rings count.
     std::size_t vertex_count() const {
@@ -42,6 +52,8 @@ struct FeatureOptions {
     std::string crs;
     /// x and y as they are in the file, whatever CRS it names: for rasters that are `plain`.
     bool plain = false;
+    /// The attribute that names features, in any case; empty: none is read. A file without it is refused: Error(bad_usage).
+    std::string name_field;
     /// The largest number of vertices kept (24 bytes each). GDAL takes memory of its own, for some formats more.
     std::int64_t max_vertices = 50'000'000;
 };

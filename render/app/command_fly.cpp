@@ -86,6 +86,7 @@ void fill(Report& report, const FilmOptions& options, const FilmReport& film) {
     report.set("deviation_max_m", film.deviation_max_m);
     report.set("pixel_deviation_max", film.pixel_deviation_max);
     report.set("pixel_deviation_bound", options.render.max_pixel_deviation);
+    report.set("layers", layers_json(film.layers));
     report.set("damaged_tiles", film.damage);
     report.set("backend", film.backend);
     report.set("gl_version", film.gl_version);

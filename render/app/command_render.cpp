@@ -60,6 +60,7 @@ void fill(Report& report, const RenderOptions& options, const PictureReport& pic
     report.set("crs", picture.crs);
     report.set("vertical_datum", picture.vertical_datum);
     report.set("sources", sources_json(picture.sources));
+    report.set("layers", layers_json(picture.layers));
     report.set("backend", picture.backend);
     report.set("gl_version", picture.gl_version);
     report.set("gl_renderer", picture.gl_renderer);

@@ -56,6 +56,7 @@ void fill(Report& report, const ViewerReport& view) {
     report.set("settled", view.settled);
     report.set("view", view.view);
     report.set("damaged_tiles", view.damage);
+    report.set("layers", layers_json(view.layers));
     report.set("context", view.context);
     report.set("gl_version", view.gl_version);
     report.set("gl_renderer", view.gl_renderer);

@@ -21,6 +21,7 @@ double whole_globe_range(double fov) {
 
 /// No geoid of the Earth lies deeper below the ellipsoid, m: EGM96 goes down to -107.
 constexpr double deepest_geoid_m = 120;
+constexpr double highest_ground_m = 9000;
 
 }  // namespace
 
@@ -59,6 +60,16 @@ glm::dvec3 DrawnSurface::above_ground(const glm::dvec3& eye, double exaggerated,
     const planet::NormalPosition p = planet::position_from_ecef(wgs84, eye);
     const double floor = ground(p.normal, exaggerated) + clearance_m;
     return p.h.m < floor ? planet::ecef_from_normal(wgs84, p.normal, {floor}) : eye;
+}
+
+DrapeGround DrawnSurface::for_layers(const planet::Segments& segments, const Camera& camera,
+                                     const PicturePart& part) const {
+    constexpr int border = 64;  // of what reaches into the part from beside it, such as wide lines and labels
+    const PicturePart wider{part.x - border, part.y - border, part.width + 2 * border, part.height + 2 * border};
+    return {.drawn = planet::SegmentSurface(segments),
+            .height = [this](const glm::dvec3& normal) { return ground(normal); },
+            .culling = camera.culling(wider, occluder_radius()),
+            .relief_m = highest_ground_m * std::max(exaggeration, 1.0) + deepest_geoid_m};
 }
 
 Camera DrawnSurface::camera(const RenderOptions& o) const {

@@ -8,6 +8,7 @@
 #include "planet/store/store_field.h"
 #include "planet/streaming/store_tiles.h"
 #include "render/app/render_options.h"
+#include "render/layers/draped_lines.h"
 #include "render/picture/camera.h"
 #include "render/picture/relief_patches.h"
 
@@ -32,6 +33,8 @@ struct DrawnSurface {
     double ground(const glm::dvec3& normal, double exaggerated) const;
     /// An eye, ecef, or where it is that far above the ground of ground(normal, exaggerated) if it is lower.
     glm::dvec3 above_ground(const glm::dvec3& eye, double exaggerated, double clearance_m) const;
+    /// What layers lie on in a part of a picture. Refers to this and to the segments.
+    DrapeGround for_layers(const planet::Segments& segments, const Camera& camera, const PicturePart& part) const;
     /// The camera of a picture: over the ground as it is drawn, exaggeration and geoid included, never below it.
     Camera camera(const RenderOptions& options) const;
 };

@@ -1,5 +1,6 @@
 #include "render/app/figures.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -21,6 +22,12 @@ std::string four_digits(double number) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", rounded);
     return text;
+}
+
+std::string exact(double value) {
+    char text[400];
+    const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed);
+    return {text, end.ptr};
 }
 
 std::string fixed(double value, int decimals) {

@@ -55,6 +55,8 @@ class Film {
         steps_.time("textures", [&] { looks_.upload(data_.imagery); });
         data_.imagery = {};
         steps_.time("shaders", [&] { looks_.link(data_.stars, data_.noise, overlays_of(render_)); });
+        looks_.set_layers(data_.layers.shown(render_), data_.layers.needs_stencil());
+        report_.layers = data_.layers.report();
         set_reversed_depth();
     }
 
@@ -145,14 +147,19 @@ class Film {
         std::vector<std::uint8_t> rgba = steps_.time("draw", [&] {
             const int samples = looks_.samples(render_, camera, context_.limits().samples);
             if (!target_ || target_.samples() != samples)
-                target_ = Framebuffer(camera.width, camera.height, {.color_format = GL_RGBA8, .samples = samples});
+                target_ = Framebuffer(camera.width, camera.height, looks_.target_options(samples));
             target_.bind();
             target_.clear(0, 0, 0, 1);
-            looks_.draw({camera,
-                         {0, 0, camera.width, camera.height},
-                         view.exaggeration,
-                         mesh_.patches().texture(),
-                         mesh_.morph_reach()});
+            const PicturePart whole{0, 0, camera.width, camera.height};
+            DrapeGround ground = data_.surface->for_layers(mesh_.segments(), camera, whole);
+            looks_.draw({.camera = camera,
+                         .part = whole,
+                         .exaggeration = view.exaggeration,
+                         .patches = mesh_.patches().texture(),
+                         .ground = ground,
+                         .morph_reach = mesh_.morph_reach(),
+                         .relief = render_.shows(Overlay::relief)},
+                        target_);
             return target_.read_rgba8();
         });
         write(frame, std::move(rgba));

@@ -10,6 +10,7 @@
 #include "planet/streaming/resident_tiles.h"
 #include "render/app/flight_plan.h"
 #include "render/app/frame_output.h"
+#include "render/app/layer_report.h"
 #include "render/app/render_options.h"
 
 namespace render {
@@ -27,6 +28,7 @@ struct FilmReport {
     double deviation_max_m = 0;      ///< certified, of all frames
     double pixel_deviation_max = 0;  ///< the same
     planet::ResidentCounts tiles;
+    std::vector<LayerReport> layers;
     std::vector<std::string> damage;
     std::string backend, gl_version, gl_renderer;
     std::vector<std::pair<std::string, double>> seconds;  ///< by step

@@ -42,6 +42,8 @@ GlobeData GlobeLoading::load() {
         progress);
     data.stars = read_stars(data_file("stars.csv"));
     data.noise = make_noise_levels();
+    note("layers", 0);
+    data.layers = LayerData::load(options_, true);
     index.save();
     return data;
 }

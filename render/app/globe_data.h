@@ -12,6 +12,7 @@
 #include "render/app/drawn_surface.h"
 #include "render/app/earth_store.h"
 #include "render/app/imagery.h"
+#include "render/app/layer_data.h"
 #include "render/app/render_options.h"
 #include "render/sky/stars.h"
 
@@ -22,6 +23,7 @@ struct GlobeData {
     Imagery imagery;
     std::vector<Star> stars;
     std::vector<std::vector<std::uint8_t>> noise;
+    LayerData layers;
 };
 
 /// Loads on a thread of its own.

@@ -39,6 +39,16 @@ void GlobeLooks::link(std::span<const Star> stars, std::span<const std::vector<s
     overlay_.emplace(show);
 }
 
+void GlobeLooks::set_layers(std::vector<const Layer*> layers, bool stencil) {
+    stencil_ = stencil;
+    layers_ = std::move(layers);
+    if (!layers_.empty() && !layer_pass_) layer_pass_.emplace();
+    const bool meshes = std::ranges::any_of(layers_, [](const Layer* layer) { return layer->mesh.has_value(); });
+    if (meshes && !mesh_pass_) mesh_pass_.emplace();
+    const bool names = std::ranges::any_of(layers_, [](const Layer* layer) { return !layer->names.empty(); });
+    if (names && !label_pass_) label_pass_.emplace();
+}
+
 void GlobeLooks::set_sky(const AtmosphereTables& tables, ViewTable view, planet::UtcTime time) {
     view.uniforms.sky_detail.w = static_cast<float>(texel_m_);
     air_ = view.uniforms;
@@ -52,26 +62,38 @@ bool GlobeLooks::from_afar(const Camera& camera, double exaggeration) const {
     return !needs_close_up(air_, std::max(clearance, 0.0), pixel_angle);
 }
 
+TerrainLook GlobeLooks::look_of(const Frame& frame) const {
+    constexpr double stretch = (wgs84.a / wgs84.b) * (wgs84.a / wgs84.b);
+    return {.exaggeration = frame.exaggeration,
+            .polar_stretch = stretch,
+            .patch_range = patch_range,
+            .from_afar = frame.relief || from_afar(frame.camera, frame.exaggeration),
+            .relief = frame.relief,
+            .morph_reach = frame.morph_reach};
+}
+
 void GlobeLooks::draw_opaque(const Frame& frame) {
     sky_->bind(frame.camera, frame.part);
     day_.bind(4);
     night_.bind(5);
     relief_.bind(6);
     frame.patches.bind(7);
-    constexpr double stretch = (wgs84.a / wgs84.b) * (wgs84.a / wgs84.b);
-    terrain_->draw(frame.camera, frame.part,
-                   {.exaggeration = frame.exaggeration,
-                    .polar_stretch = stretch,
-                    .patch_range = patch_range,
-                    .from_afar = from_afar(frame.camera, frame.exaggeration),
-                    .morph_reach = frame.morph_reach});
+    terrain_->draw(frame.camera, frame.part, look_of(frame));
     sky_->draw_air(frame.camera, frame.part);
 }
 
-void GlobeLooks::draw_blended(const Frame& frame) {
+void GlobeLooks::draw_blended(const Frame& frame, const Framebuffer& target) {
     sky_->bind(frame.camera, frame.part);
+    if (mesh_pass_) mesh_pass_->draw(layers_, frame.camera, frame.part, look_of(frame));
     overlay_->draw(frame.camera, frame.part);
     sky_->draw_stars(frame.camera, frame.part);
+    if (!layers_.empty())
+        layer_pass_->draw(layers_, {.camera = frame.camera,
+                                    .part = frame.part,
+                                    .pixel_scale = frame.pixel_scale,
+                                    .ground = frame.ground,
+                                    .target = target});
+    if (label_pass_) label_pass_->draw(layers_, frame.camera, frame.part, frame.ground, frame.pixel_scale);
 }
 
 }  // namespace render

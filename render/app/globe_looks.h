@@ -11,6 +11,9 @@
 #include "render/app/imagery.h"
 #include "render/app/render_options.h"
 #include "render/gl/texture.h"
+#include "render/passes/labels.h"
+#include "render/passes/layer_meshes.h"
+#include "render/passes/layers.h"
 #include "render/passes/overlay.h"
 #include "render/passes/sky.h"
 #include "render/passes/terrain.h"
@@ -27,6 +30,13 @@ class GlobeLooks {
     void link(std::span<const Star> stars, std::span<const std::vector<std::uint8_t>> noise, OverlayPass::Show show);
     /// The air about an eye. @param view of make_view_table()
     void set_sky(const AtmosphereTables& tables, ViewTable view, planet::UtcTime time);
+    /// What lies over the terrain, the lowest first. All stay as long as this. @param stencil whether
+    /// there may ever be polygons or meshes
+    void set_layers(std::vector<const Layer*> layers, bool stencil);
+    /// Of what is to be drawn into.
+    Framebuffer::Options target_options(int samples) const {
+        return {.color_format = GL_RGBA8, .samples = samples, .stencil = stencil_};
+    }
     void set_overlay(OverlayPass::Show show) { overlay_.emplace(show); }
 
     /// Whether a camera can only see ground as coarse as the imagery: such pictures need one sample a pixel.
@@ -43,27 +53,37 @@ class GlobeLooks {
         PicturePart part;
         double exaggeration = 1;
         const Texture& patches;
+        DrapeGround& ground;     ///< what layers lie on
         double morph_reach = 0;  ///< see TerrainLook
+        bool relief = false;     ///< heights as colours instead of the imagery
+        double pixel_scale = 1;  ///< of widths: below 1 where the picture is shown larger
     };
-    /// Draws the meshes of terrain() and overlay() into what is bound.
-    void draw(const Frame& frame) {
+    /// Draws the meshes of terrain() and overlay(), and layers, into what is bound: the target.
+    void draw(const Frame& frame, const Framebuffer& target) {
         draw_opaque(frame);
-        draw_blended(frame);
+        draw_blended(frame, target);
     }
     /// Ground and sky, as often over each other as may be; then, once, what blends over them.
     void draw_opaque(const Frame& frame);
-    void draw_blended(const Frame& frame);
+    void draw_blended(const Frame& frame, const Framebuffer& target);
 
     TerrainPass& terrain() { return *terrain_; }
     OverlayPass& overlay() { return *overlay_; }
 
   private:
+    TerrainLook look_of(const Frame& frame) const;
+
     Texture day_, night_, relief_;
     double texel_m_ = 0;
     SkyUniforms air_{};
     std::optional<TerrainPass> terrain_;
     std::optional<SkyPass> sky_;
     std::optional<OverlayPass> overlay_;
+    std::vector<const Layer*> layers_;
+    bool stencil_ = false;
+    std::optional<LayerPass> layer_pass_;     // once there are layers
+    std::optional<LayerMeshPass> mesh_pass_;  // once there are meshes
+    std::optional<LabelPass> label_pass_;     // once there are names
 };
 
 }  // namespace render

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "render/app/earth_store.h"
 #include "render/app/globe_looks.h"
 #include "render/app/imagery.h"
+#include "render/app/layer_data.h"
 #include "render/app/part_mesh.h"
 #include "render/app/steps.h"
 #include "render/gl/framebuffer.h"
@@ -113,6 +115,7 @@ class Painter {
           threads_(options.thread_count()),
           noise_(beside(threads_, [this] { return steps_.time("noise", [] { return make_noise_levels(); }); })),
           tables_(beside(threads_, [this] { return steps_.time("air", [] { return make_tables(); }); })),
+          layers_read_(beside(threads_, [this] { return steps_.time("layers", [&] { return load_layers(); }); })),
           context_(steps_.time("context", [&] { return Context::create({.backend = options.backend}); })),
           earth_(options.earth),
           index_(user_checksum_index()),
@@ -139,7 +142,7 @@ class Painter {
                 pixels.resize(static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.height) * 3);
             }
             const PicturePart kept = parts_.kept(*part);
-            paint_part(parts_.drawn(*part), kept, band, pixels);
+            paint_part(parts_.drawn(*part), meshes_[last_].segments, kept, band, pixels);
             done += static_cast<double>(kept.width) * kept.height;
             options_.progress("drawing", done / all);
         }
@@ -154,6 +157,11 @@ class Painter {
         if (options_.store)
             return std::make_shared<const planet::ElevationStore>(planet::ElevationStore::open(*options_.store, wgs84));
         return open_earth_store(options_.earth, earth_, index_, options_.progress);
+    }
+
+    LayerData load_layers() {
+        if (!options_.layers.empty()) options_.progress("reading layers", std::numeric_limits<double>::quiet_NaN());
+        return LayerData::load(options_);
     }
 
     void open_looks() {
@@ -175,6 +183,8 @@ class Painter {
         steps_.time("shaders", [&] { looks_.link(stars, noise, overlays_of(options_)); });
         const auto [tables, view] = air.get();
         looks_.set_sky(tables, view, options_.time);
+        layers_ = layers_read_.get();
+        looks_.set_layers(layers_.shown(options_), layers_.needs_stencil());
         set_reversed_depth();
     }
 
@@ -215,21 +225,28 @@ class Painter {
     }
 
     /// @param part that is drawn @param kept of it @param band of the picture, into whose pixels that goes
-    void paint_part(const PicturePart& part, const PicturePart& kept, const PicturePart& band,
-                    std::vector<std::uint8_t>& pixels) {
+    void paint_part(const PicturePart& part, const planet::Segments& segments, const PicturePart& kept,
+                    const PicturePart& band, std::vector<std::uint8_t>& pixels) {
         std::vector<std::uint8_t> drawn;
         steps_.time("draw", [&] {
             if (!target_ || target_.width() != part.width || target_.height() != part.height) {
                 target_ = Framebuffer();  // before another takes memory
                 const int samples = looks_.samples(options_, camera_, context_.limits().samples);
-                target_ = Framebuffer(part.width, part.height, {.color_format = GL_RGBA8, .samples = samples});
+                target_ = Framebuffer(part.width, part.height, looks_.target_options(samples));
             }
             target_.bind();
             // What is not wanted need not be drawn; OpenGL counts rows from below.
             gl().Enable(GL_SCISSOR_TEST);
             gl().Scissor(kept.x - part.x, part.y + part.height - kept.y - kept.height, kept.width, kept.height);
             target_.clear(0, 0, 0, 1);
-            looks_.draw({camera_, part, options_.exaggeration, patch_texture_});
+            DrapeGround ground = surface_.for_layers(segments, camera_, part);
+            looks_.draw({.camera = camera_,
+                         .part = part,
+                         .exaggeration = options_.exaggeration,
+                         .patches = patch_texture_,
+                         .ground = ground,
+                         .relief = options_.shows(Overlay::relief)},
+                        target_);
             drawn = target_.read_rgba8();
             gl().Disable(GL_SCISSOR_TEST);
         });
@@ -246,6 +263,7 @@ class Painter {
 
     void fill_report() {
         report_.tiles = mesher_.counts();
+        report_.layers = layers_.report();
         report_.damage = surface_.field.cache().damage();
         report_.eye_height_m = planet::height_from_ecef(wgs84, camera_.eye).m;
         report_.crs = "EPSG:4978";
@@ -292,6 +310,8 @@ class Painter {
     unsigned threads_;
     std::future<std::vector<std::vector<std::uint8_t>>> noise_;
     std::future<AtmosphereTables> tables_;
+    std::future<LayerData> layers_read_;
+    LayerData layers_;
     Context context_;
     LazyEarth earth_;
     ChecksumIndex index_;

@@ -9,6 +9,7 @@
 #include "planet/elevation/elevation_field.h"
 #include "planet/streaming/resident_tiles.h"
 #include "planet/terrain/ground.h"
+#include "render/app/layer_report.h"
 #include "render/app/render_options.h"
 
 namespace render {
@@ -43,6 +44,7 @@ struct PictureReport {
     std::string crs;                      ///< of what is drawn, e.g. "EPSG:4979"
     std::string vertical_datum;
     std::vector<planet::SourceInfo> sources;
+    std::vector<LayerReport> layers;
     std::string backend;  ///< the way in that was taken, never "auto"
     std::string gl_version;
     std::string gl_renderer;

@@ -77,7 +77,8 @@ void add_drawing_options(CLI::App& command, RenderOptions& o) {
               [&](Where where, const std::string& text) {
                   o.memory_bytes = parse_memory(where, text, std::size_t{1} << 20, std::size_t{1} << 40);
               });
-    add_value(command, "--show", "LIST", "Draw on top: mesh,levels,curve,segments,deviations,graticule",
+    add_value(command, "--show", "LIST",
+              "Draw on top: coastlines,borders,graticule,relief,mesh,levels,curve,segments,deviations",
               [&](Where where, const std::string& text) { o.show = overlays_from_text(where, text); });
     add_value(command, "--samples", "COUNT", "Samples a pixel: 1, 2, 4, 8 [4 near the ground, 1 from afar]",
               [&](Where where, const std::string& text) {
@@ -141,6 +142,7 @@ void add_look_options(CLI::App& command, RenderOptions& o) {
     add_value(command, "--store", "FILE", "A baked store instead of the default Earth",
               [&](Where where, const std::string& text) { o.store = path_from_text(where, text); })
         ->excludes("--elevation");
+    add_layer_option(command, o.layers);
     add_files(command, "--imagery", "Pictures of the whole globe, the last on top, instead of the default", o.imagery);
 }
 

@@ -15,6 +15,7 @@
 #include "planet/frames.h"
 #include "planet/geodesy/utc_time.h"
 #include "render/app/earth.h"
+#include "render/app/layer_options.h"
 #include "render/app/values.h"
 #include "render/gl/context.h"
 
@@ -32,6 +33,9 @@ enum class Overlay : std::uint32_t {
     segments = 8,     ///< a colour for each segment: what is drawn and kept as one
     deviations = 16,  ///< a colour for how far a triangle is at most from the finest surface
     graticule = 32,   ///< parallels and meridians
+    coastlines = 64,
+    borders = 128,  ///< of countries
+    relief = 256,   ///< colours of heights instead of the imagery
 };
 
 /// As --show names them.
@@ -39,9 +43,15 @@ struct OverlayName {
     std::string_view name;
     Overlay overlay;
 };
-inline constexpr OverlayName overlay_names[] = {
-    {"mesh", Overlay::mesh},         {"levels", Overlay::levels},         {"curve", Overlay::curve},
-    {"segments", Overlay::segments}, {"deviations", Overlay::deviations}, {"graticule", Overlay::graticule}};
+inline constexpr OverlayName overlay_names[] = {{"mesh", Overlay::mesh},
+                                                {"levels", Overlay::levels},
+                                                {"curve", Overlay::curve},
+                                                {"segments", Overlay::segments},
+                                                {"deviations", Overlay::deviations},
+                                                {"graticule", Overlay::graticule},
+                                                {"coastlines", Overlay::coastlines},
+                                                {"borders", Overlay::borders},
+                                                {"relief", Overlay::relief}};
 
 struct RenderOptions {
     /// The place the picture is about, h = 0. What "ground" means below is the drawn surface there: the terrain with
@@ -77,6 +87,8 @@ struct RenderOptions {
     std::vector<std::filesystem::path> imagery{};  ///< pictures of the whole globe, later on top
 
     std::optional<PictureCrop> crop{};  ///< only these pixels of the picture, just as they are in the whole
+    std::vector<LayerOptions> layers{};  ///< over the terrain, later on top
+
     std::filesystem::path output = "globe.png";
 
     /// Told how far a step is, 0..1 or NaN, from any thread. Never null.

@@ -15,10 +15,10 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void make_target(Framebuffer& target, int width, int height, int samples) {
-    if (target && target.width() == width && target.height() == height && target.samples() == samples) return;
+void make_target(Framebuffer& target, int width, int height, const Framebuffer::Options& options) {
+    if (target && target.width() == width && target.height() == height && target.samples() == options.samples) return;
     target = Framebuffer();  // before another takes memory
-    target = Framebuffer(width, height, {.color_format = GL_RGBA8, .samples = samples});
+    target = Framebuffer(width, height, options);
 }
 
 /// The same view in fewer pixels.
@@ -36,10 +36,19 @@ double ViewFrame::draw_moving(GlobeLooks& looks, const GlobeLooks::Frame& frame,
     const auto start = Clock::now();
     settled_ = still_shown_ = false;
     const Camera camera = scaled(frame.camera, scale);
-    make_target(moving_, camera.width, camera.height, 1);
+    make_target(moving_, camera.width, camera.height, looks.target_options(1));
     moving_.bind();
     moving_.clear(0, 0, 0, 1);
-    looks.draw({camera, {0, 0, camera.width, camera.height}, frame.exaggeration, frame.patches, frame.morph_reach});
+    const double pixel_scale = static_cast<double>(camera.width) / frame.camera.width;
+    looks.draw({.camera = camera,
+                .part = {0, 0, camera.width, camera.height},
+                .exaggeration = frame.exaggeration,
+                .patches = frame.patches,
+                .ground = frame.ground,
+                .morph_reach = frame.morph_reach,
+                .relief = frame.relief,
+                .pixel_scale = pixel_scale},
+               moving_);
     gl().Finish();
     return seconds_since(start);
 }
@@ -53,7 +62,7 @@ void ViewFrame::begin_settled(int samples) {
 bool ViewFrame::draw_settled(GlobeLooks& looks, const GlobeLooks::Frame& frame, double seconds) {
     const auto start = Clock::now();
     const int width = frame.camera.width, height = frame.camera.height;
-    make_target(next_, width, height, samples_);
+    make_target(next_, width, height, looks.target_options(samples_));
     next_.bind();
     gl().Enable(GL_SCISSOR_TEST);
     while (rows_done_ < height && (rows_done_ == 0 || seconds_since(start) < seconds)) {
@@ -70,7 +79,7 @@ bool ViewFrame::draw_settled(GlobeLooks& looks, const GlobeLooks::Frame& frame, 
     gl().Disable(GL_SCISSOR_TEST);
     // At once: with several samples a pixel llvmpipe draws a row beyond the scissor, and rows would blend twice.
     if (rows_done_ >= height && !settled_) {
-        looks.draw_blended(frame);
+        looks.draw_blended(frame, next_);
         std::swap(still_, next_);
         settled_ = still_shown_ = true;
     }

@@ -28,13 +28,6 @@ double rounded(double value, int decimals) {
     return result;
 }
 
-/// The shortest text that reads back to the same bits.
-std::string exact(double value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed);
-    return {text, end.ec == std::errc() ? end.ptr : text};
-}
-
 /// An angle in radians as the text of degrees that is parsed to it: text * degrees has rounded once.
 std::string degrees_text(double angle) {
     const std::string plain = exact(angle / degrees);
@@ -105,6 +98,8 @@ std::string render_line(const RenderOptions& o) {
         line += std::string(" ") + name;
         for (const auto& file : *files) line += " " + quoted(file.native());
     }
+    for (const LayerOptions& layer : o.layers)
+        if (layer.shown) add("--layer", layer_text(layer));
     if (!o.earth.elevation.empty() && o.earth.elevation_datum != usual.earth.elevation_datum)
         add("--elevation-datum", "ellipsoid");
     return line;

@@ -83,6 +83,7 @@ void ViewerSession::fill_report() {
     report_.deviation_max_m = mesh_->deviation_m();
     report_.pixel_deviation_max = mesh_->pixel_deviation();
     report_.view = render_line(resting_.value_or(options_of_pose(render_, *data_.surface, navigator_->pose())));
+    report_.layers = data_.layers.report();
     report_.damage = data_.surface->field.cache().damage();
 }
 
@@ -112,6 +113,7 @@ bool ViewerSession::load() {
 void ViewerSession::begin() {
     looks_.upload(data_.imagery);
     looks_.link(data_.stars, data_.noise, overlays_of(render_));
+    show_layers();
     const Limits& limits = stage_.context.limits();
     mesh_.emplace(render_, *data_.surface, std::min<std::size_t>(2048, static_cast<std::size_t>(limits.array_layers)));
     pace_.emplace(is_software(stage_.context.gl_renderer()), render_.max_triangles.value_or(~std::size_t{0}));
@@ -239,11 +241,15 @@ void ViewerSession::update_globe() {
 void ViewerSession::draw() {
     const bool changed = mesh_changed_ || air_changed_ || look_changed_;
     const Camera camera = resting_ ? data_.surface->camera(*resting_) : camera_;
-    const GlobeLooks::Frame frame{camera,
-                                  {0, 0, camera.width, camera.height},
-                                  render_.exaggeration,
-                                  mesh_->patches().texture(),
-                                  mesh_->morph_reach()};
+    const PicturePart whole{0, 0, camera.width, camera.height};
+    DrapeGround ground = data_.surface->for_layers(mesh_->segments(), camera, whole);
+    const GlobeLooks::Frame frame{.camera = camera,
+                                  .part = whole,
+                                  .exaggeration = render_.exaggeration,
+                                  .patches = mesh_->patches().texture(),
+                                  .ground = ground,
+                                  .morph_reach = mesh_->morph_reach(),
+                                  .relief = render_.shows(Overlay::relief)};
     const bool complete = resting_ && mesh_->complete() && air_.is_for(camera.eye, render_.time);
     picture_new_ = false;
     worked_ = true;
@@ -362,6 +368,11 @@ void ViewerSession::set_exaggeration(double factor) {
     look_changed_ = true;
 }
 
+void ViewerSession::show_layers() {
+    looks_.set_layers(data_.layers.shown(render_), data_.layers.needs_stencil());
+    look_changed_ = true;
+}
+
 void ViewerSession::toggle(Overlay overlay) {
     // A triangle has one colour.
     constexpr auto colors = static_cast<std::uint32_t>(Overlay::levels) |
@@ -370,7 +381,7 @@ void ViewerSession::toggle(Overlay overlay) {
     const auto bit = static_cast<std::uint32_t>(overlay);
     render_.show = (bit & colors) != 0 ? (render_.show & (~colors | bit)) ^ bit : render_.show ^ bit;
     looks_.set_overlay(overlays_of(render_));
-    look_changed_ = true;
+    show_layers();
 }
 
 void ViewerSession::go_to_typed() {
@@ -480,6 +491,15 @@ void ViewerSession::act(Action action) {
             break;
         case show_graticule:
             toggle(Overlay::graticule);
+            break;
+        case show_coastlines:
+            toggle(Overlay::coastlines);
+            break;
+        case show_borders:
+            toggle(Overlay::borders);
+            break;
+        case show_relief:
+            toggle(Overlay::relief);
             break;
         case show_segments:
             toggle(Overlay::segments);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planet/streaming/resident_tiles.h"
+#include "render/app/layer_report.h"
 #include "render/app/render_options.h"
 
 namespace render {
@@ -32,6 +33,7 @@ struct ViewerReport {
     bool settled = false;
     std::string view;  ///< the command line of the last view
     std::vector<std::string> damage;
+    std::vector<LayerReport> layers;
     std::string gl_version, gl_renderer, context;
 };
 

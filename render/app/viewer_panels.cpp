@@ -32,6 +32,9 @@ struct OverlaySwitch {
 };
 constexpr OverlaySwitch overlay_switches[] = {
     {Overlay::graticule, "Graticule", Action::show_graticule},
+    {Overlay::coastlines, "Coastlines", Action::show_coastlines},
+    {Overlay::borders, "Borders", Action::show_borders},
+    {Overlay::relief, "Heights as colours", Action::show_relief},
     {Overlay::mesh, "Wireframe", Action::show_mesh},
     {Overlay::levels, "Bisection levels", Action::show_levels},
     {Overlay::deviations, "Deviations", Action::show_deviations},
@@ -85,8 +88,17 @@ void ViewerSession::fill_settings() {
     panels_.layers.clear();
     panels_.modes.clear();
     for (const OverlaySwitch& s : overlay_switches)
-        (s.overlay == Overlay::graticule ? panels_.layers : panels_.modes)
+        (s.overlay < Overlay::graticule ? panels_.modes : panels_.layers)
             .push_back({s.name, key_text(s.action), render_.shows(s.overlay)});
+    panels_.own_layers.clear();
+    for (std::size_t i = render_.layers.size(); i-- > 0;) {
+        const LayerOptions& layer = render_.layers[i];
+        const glm::vec3 color = data_.layers.own()[i].layer.style.color;
+        panels_.own_layers.push_back({.name = data_.layers.own()[i].name,
+                                      .color = {color.r, color.g, color.b},
+                                      .on = layer.shown,
+                                      .opacity = static_cast<float>(layer.opacity)});
+    }
     panels_.modes.push_back({"Frozen culling", key_text(Action::freeze_culling), frozen_.has_value()});
 }
 
@@ -169,6 +181,25 @@ void ViewerSession::fill_statistics() {
     };
 }
 
+// The panel has the highest layer first, the options the lowest.
+void ViewerSession::take_layer_changes() {
+    for (std::size_t row = 0; row < panels_.own_layers.size(); ++row) {
+        LayerRow& changed = panels_.own_layers[row];
+        if (!std::exchange(changed.changed, false)) continue;
+        const std::size_t i = render_.layers.size() - 1 - row;
+        LayerOptions& layer = render_.layers[i];
+        layer.shown = changed.on;
+        layer.opacity = std::round(100 * static_cast<double>(changed.opacity)) / 100;
+        const std::size_t other = i + static_cast<std::size_t>(std::exchange(changed.raise, 0));
+        if (other != i && other < render_.layers.size()) {
+            std::swap(layer, render_.layers[other]);
+            data_.layers.swap(i, other);
+        }
+        show_layers();
+        return;  // what the rows are of may have changed
+    }
+}
+
 void ViewerSession::take_panel_changes() {
     if (std::exchange(panels_.north_pressed, false)) navigator_->north_up(lens());
     if (std::exchange(panels_.go_to_entered, false)) go_to_typed();
@@ -181,6 +212,7 @@ void ViewerSession::take_panel_changes() {
     for (std::vector<Switch>* list : {&panels_.layers, &panels_.modes})
         for (Switch& changed : *list)
             if (std::exchange(changed.changed, false)) act(action_of_switch(changed.name));
+    take_layer_changes();
     if (std::exchange(panels_.exaggeration_changed, false))
         set_exaggeration(std::round(10 * static_cast<double>(panels_.exaggeration)) / 10);
 }

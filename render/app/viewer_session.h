@@ -52,6 +52,7 @@ class ViewerSession {
     void count_errors();
     void set_time(planet::UtcTime time);
     void set_exaggeration(double factor);
+    void show_layers();
     void toggle(Overlay overlay);
     void toggle_frozen();
     void copy_view();
@@ -70,6 +71,7 @@ class ViewerSession {
     void fill_statistics();
     void fill_settings();
     void take_panel_changes();
+    void take_layer_changes();
     void notice(std::string text);
 
     const ViewerOptions& options_;

@@ -14,7 +14,10 @@ Handle<FramebufferKind> make_framebuffer(const Texture& color, const Texture& de
     gl().CreateFramebuffers(1, &name);
     Handle<FramebufferKind> framebuffer(name);
     gl().NamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, color.name(), 0);
-    if (depth) gl().NamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth.name(), 0);
+    const bool stencil = depth.internal_format() == GL_DEPTH32F_STENCIL8;
+    if (depth)
+        gl().NamedFramebufferTexture(name, stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth.name(),
+                                     0);
     const GLenum status = gl().CheckNamedFramebufferStatus(name, GL_FRAMEBUFFER);
     require_gl("a framebuffer");
     if (status != GL_FRAMEBUFFER_COMPLETE)
@@ -51,19 +54,26 @@ Framebuffer::Framebuffer(int width, int height, const Options& options)
                             std::to_string(width) + "x" + std::to_string(height),
                             "1x1 to " + std::to_string(limit) + "x" + std::to_string(limit));
     color_ = Texture::make_2d(options.color_format, width, height);
-    if (options.depth) depth_ = Texture::make_2d(GL_DEPTH_COMPONENT32F, width, height);
+    const GLenum depth_format = options.stencil ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F;
+    if (options.depth) depth_ = Texture::make_2d(depth_format, width, height);
     if (samples_ == 1) {
         draw_ = make_framebuffer(color_, depth_);
         return;
     }
     sampled_color_ = Texture::make_multisample(options.color_format, width, height, samples_);
-    if (options.depth) sampled_depth_ = Texture::make_multisample(GL_DEPTH_COMPONENT32F, width, height, samples_);
+    if (options.depth) sampled_depth_ = Texture::make_multisample(depth_format, width, height, samples_);
     draw_ = make_framebuffer(sampled_color_, sampled_depth_);
     resolved_ = make_framebuffer(color_, depth_);
 }
 
 void Framebuffer::bind() const {
     gl().BindFramebuffer(GL_FRAMEBUFFER, draw_.name());
+    gl().Viewport(0, 0, width_, height_);
+}
+
+void Framebuffer::bind_color() const {
+    if (!color_only_) color_only_ = make_framebuffer(samples_ > 1 ? sampled_color_ : color_, {});
+    gl().BindFramebuffer(GL_FRAMEBUFFER, color_only_.name());
     gl().Viewport(0, 0, width_, height_);
 }
 
@@ -82,8 +92,12 @@ void Framebuffer::blit_to(GLuint target, GLbitfield what) const {
 void Framebuffer::resolve() const {
     if (samples_ == 1) return;
     blit_to(resolved_.name(), GL_COLOR_BUFFER_BIT);
-    if (depth_) blit_to(resolved_.name(), GL_DEPTH_BUFFER_BIT);
+    resolve_depth();
     check_gl("Framebuffer::resolve");
+}
+
+void Framebuffer::resolve_depth() const {
+    if (samples_ > 1 && depth_) blit_to(resolved_.name(), GL_DEPTH_BUFFER_BIT);
 }
 
 void Framebuffer::show_in_window(int width, int height) const {

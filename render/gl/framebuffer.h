@@ -23,6 +23,7 @@ class Framebuffer {
         GLenum color_format = GL_RGBA8;  ///< GL_RGBA8, GL_SRGB8_ALPHA8, GL_RGBA16F, GL_RGBA32F, ...
         int samples = 1;                 ///< 1..Limits::samples
         bool depth = true;
+        bool stencil = false;  ///< eight bits, beside depth
     };
 
     Framebuffer() = default;
@@ -38,19 +39,24 @@ class Framebuffer {
 
     /// Makes it what is drawn to, and its whole area the viewport.
     void bind() const;
+    /// The same without depth, which depth() can then be read from while this is drawn to.
+    void bind_color() const;
     /// Clears colour, and depth to 0 (the far end of reversed depth). Does not depend on any state but the scissor and
     /// the write masks.
     void clear(float red, float green, float blue, float alpha) const;
     /// Averages the samples into color() and takes one of them into depth(). Nothing to do for one sample. The
     /// scissor test, if enabled, limits it.
     void resolve() const;
+    /// Depth alone.
+    void resolve_depth() const;
 
     /// Draws the picture over a window's framebuffer (0), stretched to its size; resolves before.
     void show_in_window(int width, int height) const;
 
     /// The picture as a texture, after resolve().
     const Texture& color() const noexcept { return color_; }
-    /// The depth as a texture (GL_DEPTH_COMPONENT32F), after resolve(); empty without depth.
+    /// The depth as a texture (GL_DEPTH_COMPONENT32F, or with stencil GL_DEPTH32F_STENCIL8), after resolve(); empty
+    /// without depth.
     const Texture& depth() const noexcept { return depth_; }
 
     /// Reads colour as 8-bit RGBA, the top row first, and resolves before. Values of a float picture are clamped to
@@ -68,9 +74,10 @@ class Framebuffer {
     std::vector<Value> read(GLenum format, std::size_t components) const;
 
     int width_ = 0, height_ = 0, samples_ = 1;
-    Texture color_, depth_;                    // one sample a pixel
-    Texture sampled_color_, sampled_depth_;    // several, if samples_ > 1
-    Handle<FramebufferKind> draw_, resolved_;  // resolved_ only if samples_ > 1
+    Texture color_, depth_;                       // one sample a pixel
+    Texture sampled_color_, sampled_depth_;       // several, if samples_ > 1
+    Handle<FramebufferKind> draw_, resolved_;     // resolved_ only if samples_ > 1
+    mutable Handle<FramebufferKind> color_only_;  // made when it is first bound
 };
 
 }  // namespace render

@@ -41,6 +41,7 @@ constexpr PixelFormat pixel_formats[] = {
     {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8},
     {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16},
     {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4},
+    {GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, 8},
 };
 
 /// Calls set(parameter, value) for each property: the same for a texture and a sampler.

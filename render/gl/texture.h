@@ -18,7 +18,7 @@ struct PixelFormat {
 };
 
 /// The layout of an internal format: 8 and 16-bit UNORM and SNORM, sRGB8 with or without alpha, 16 and 32-bit float and
-/// 8, 16 and 32-bit integers, and GL_DEPTH_COMPONENT32F. Asking for another one is misuse.
+/// 8, 16 and 32-bit integers, GL_DEPTH_COMPONENT32F and GL_DEPTH32F_STENCIL8. Asking for another one is misuse.
 PixelFormat pixel_format(GLenum internal_format);
 
 /// Levels of a full mip chain down to 1 x 1 (x 1).

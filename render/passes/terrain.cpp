@@ -97,10 +97,11 @@ Program& TerrainPass::program(const TerrainLook& look) {
     const bool morphed = look.morph_reach > 0;
     assert(!morphed || morphs_.buffer());
     Program& p = programs_[static_cast<std::size_t>(look.from_afar) + 2 * static_cast<std::size_t>(patched_) +
-                           4 * static_cast<std::size_t>(morphed)];
+                           4 * static_cast<std::size_t>(morphed) + 8 * static_cast<std::size_t>(look.relief)];
     if (!p) {
         ProgramOptions options;
         if (look.from_afar) options.defines.push_back("FROM_AFAR");
+        if (look.relief) options.defines.push_back("RELIEF");
         if (patched_) options.defines.push_back("PATCHED");
         if (morphed) options.defines.push_back("MORPH");
         p = Program::link({"terrain.vert.glsl", "terrain.frag.glsl"}, options);

@@ -17,6 +17,7 @@ struct TerrainLook {
     double polar_stretch = 1;  ///< (a/b)^2 of the ellipsoid
     float patch_range = 1;     ///< what 1 in a patch texel stands for
     bool from_afar = false;    ///< see needs_close_up()
+    bool relief = false;       ///< heights as colours instead of the imagery; from_afar too, then
     double morph_reach = 0;    ///< K of the split test if vertices morph, which takes segments with morphs(); else 0
 };
 
@@ -58,7 +59,7 @@ class TerrainPass {
     Program& program(const TerrainLook& look);
     void make_array(bool morphs);
 
-    std::array<Program, 8> programs_;  // linked when first needed: bit 0 from afar, bit 1 patched, bit 2 morphed
+    std::array<Program, 16> programs_;  // linked when first needed: bit 0 from afar, 1 patched, 2 morphed, 3 relief
     bool patched_ = false;
     VertexArray array_;
     FollowingBuffer vertices_, morphs_, indices_, layers_, commands_;

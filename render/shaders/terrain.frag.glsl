@@ -21,13 +21,30 @@ in float orthometric;
 flat in int layer;
 layout(location = 0) out vec4 color;
 
+#ifdef RELIEF
+/// Linear colour of a height, m: the sea, then green lowlands over ochre to white, as in atlases. Shores are the imagery's,
+/// for from afar triangles are larger than bays. @param water 0..1
+vec3 height_color(float height, float water) {
+    const vec3 sea = vec3(0.055, 0.125, 0.205);
+    const vec3 tints[6] = vec3[](vec3(0.070, 0.150, 0.062), vec3(0.175, 0.210, 0.070), vec3(0.330, 0.230, 0.085),
+                                 vec3(0.230, 0.110, 0.048), vec3(0.260, 0.190, 0.160), vec3(0.720, 0.730, 0.760));
+    const float tops[6] = float[](0.0, 350.0, 1100.0, 2400.0, 3800.0, 5500.0);
+    vec3 tint = tints[0];
+    for (int i = 1; i < 6; ++i) tint = mix(tint, tints[i], clamp((height - tops[i - 1]) / (tops[i] - tops[i - 1]), 0.0, 1.0));
+    return mix(tint, sea, smoothstep(0.35, 0.65, water));
+}
+#endif
+
 void main() {
     vec3 place = eye + view;
     SurfaceInput s;
     s.view = view;
     s.normal = normalize(vec3(place.xy, place.z * shape.x));
     s.footprint = length(view) * pixel_angle;
-#ifdef FROM_AFAR
+#ifdef RELIEF
+    vec4 day = vec4(height_color(orthometric, texture(day_cube, s.normal).a), 0.0);
+    s.imagery = day.rgb;
+#elif defined(FROM_AFAR)
     vec4 day = texture(day_cube, s.normal);
     s.imagery = day.rgb;
 #else
@@ -37,7 +54,11 @@ void main() {
     s.imagery = day.rgb * (1.0 + 0.22 * grain.w);
 #endif
     s.water = day.a;
+#ifdef RELIEF
+    s.night = vec3(0.0);
+#else
     s.night = texture(night_cube, s.normal).rgb;
+#endif
     vec3 offset = texture(relief_cube, s.normal).xyz * 0.5;
 #ifdef PATCHED
     vec2 dx = dFdx(patch_uv), dy = dFdy(patch_uv);

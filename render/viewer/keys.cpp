@@ -35,6 +35,9 @@ constexpr Entry picture[] = {
     {{Key::right_bracket, false, false, hour_on}, "]", "an hour on (Shift: a day)"},
     {{key_of('E'), false, false, steeper}, "E", "heights steeper (Shift: flatter)"},
     {{key_of('R'), false, false, show_graticule}, "R", "graticule"},
+    {{key_of('O'), false, false, show_coastlines}, "O", "coastlines"},
+    {{key_of('J'), false, false, show_borders}, "J", "borders of countries"},
+    {{key_of('I'), false, false, show_relief}, "I", "imagery, or heights as colours"},
     {{key_of('U'), false, false, place_format}, "U", "degrees, minutes, UTM, MGRS"},
 };
 constexpr Entry program[] = {

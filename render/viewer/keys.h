@@ -39,6 +39,9 @@ enum class Action {
     show_deviations,
     freeze_culling,
     show_graticule,
+    show_coastlines,
+    show_borders,
+    show_relief,
 };
 
 struct Binding {

@@ -38,6 +38,16 @@ struct Switch {
     bool changed = false;  ///< by the user, since the last draw
 };
 
+/// A layer of the user's in the settings.
+struct LayerRow {
+    std::string name;
+    std::array<float, 3> color{};  ///< sRGB, 0..1
+    bool on = true;
+    float opacity = 1;     ///< 0..1
+    int raise = 0;         ///< 1: over the next one, -1: below the one before
+    bool changed = false;  ///< any of it, by the user, since the last draw
+};
+
 struct Panels {
     bool shown = true;  ///< none at all: the picture alone
 
@@ -63,6 +73,7 @@ struct Panels {
     std::vector<std::string> facts;  ///< "triangles\t105 074": a line each, name and value
     std::vector<Plot> plots;
     std::vector<Switch> layers, modes;
+    std::vector<LayerRow> own_layers;  ///< the highest first
     std::string time_text;
     float day_hours = 0;  ///< UTC, 0..24
     float year_day = 0;   ///< 0..365

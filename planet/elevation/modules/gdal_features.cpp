@@ -3,11 +3,13 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <numbers>
 #include <optional>
+#include <span>
 
 #include "planet/elevation/features.h"
 #include "planet/elevation/modules/gdal_crs.h"
@@ -187,6 +189,19 @@ class FeatureCollector {
             throw Error(Fault::bad_data, path_, std::string("holds a ") + geometry.getGeometryName(), vector_file);
     }
 
+    /// Before a feature's geometries are added, and after.
+    void begin_feature() {
+        ++features_.feature_count;
+        points_before_ = features_.points.size();
+        lines_before_ = features_.lines.size();
+        polygons_before_ = features_.polygons.size();
+    }
+    void name_feature(const std::string& text) {
+        if (text.empty()) return;
+        const bool of_point = features_.points.size() > points_before_;
+        if (const auto place = place_of_feature()) features_.names.push_back({text, *place, of_point});
+    }
+
     Features take() {
         if (features_.points.empty() && features_.lines.empty() && features_.polygons.empty())
             throw Error(Fault::bad_data, path_, "holds no points, lines or polygons", vector_file);
@@ -194,6 +209,40 @@ class FeatureCollector {
     }
 
   private:
+    std::optional<glm::dvec2> place_of_feature() const {
+        const auto since = [](const auto& list, std::size_t before) { return std::span(list).subspan(before); };
+        if (const auto points = since(features_.points, points_before_); !points.empty())
+            return glm::dvec2(points.front());
+        if (const auto polygons = since(features_.polygons, polygons_before_); !polygons.empty())
+            return centroid(std::ranges::max_element(polygons, {}, [](const Polygon& p) {
+                                return std::abs(doubled_area(p.outer));
+                            })->outer);
+        const auto lines = since(features_.lines, lines_before_);
+        if (lines.empty()) return std::nullopt;
+        const auto& longest = *std::ranges::max_element(lines, {}, [](const auto& line) { return line.size(); });
+        return glm::dvec2(longest[longest.size() / 2]);
+    }
+
+    static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+    static double doubled_area(const std::vector<glm::dvec3>& ring) {
+        double sum = 0;
+        const glm::dvec2 from(ring.front());
+        for (std::size_t i = 1; i < ring.size(); ++i)
+            sum += cross(glm::dvec2(ring[i - 1]) - from, glm::dvec2(ring[i]) - from);
+        return sum;
+    }
+    static glm::dvec2 centroid(const std::vector<glm::dvec3>& ring) {
+        const double area = doubled_area(ring);
+        const glm::dvec2 from(ring.front());
+        if (area == 0) return from;
+        glm::dvec2 sum(0);
+        for (std::size_t i = 1; i < ring.size(); ++i) {
+            const glm::dvec2 a = glm::dvec2(ring[i - 1]) - from, b = glm::dvec2(ring[i]) - from;
+            sum += cross(a, b) * (a + b);
+        }
+        return from + sum / (3 * area);
+    }
+
     // To OGR a point with a coordinate that is not a number is empty, as one with two such coordinates truly is.
     static bool is_half_a_number(const OGRPoint& p) { return std::isnan(p.getX()) != std::isnan(p.getY()); }
 
@@ -266,6 +315,7 @@ class FeatureCollector {
     std::int64_t room_;
     std::string too_many_;
     Features features_;
+    std::size_t points_before_ = 0, lines_before_ = 0, polygons_before_ = 0;
     std::vector<glm::dvec3> one_;
 };
 
@@ -283,6 +333,36 @@ bool is_cut(const std::string& driver, GDALDataset& dataset, std::int64_t featur
     return features_read < promised;
 }
 
+// The attribute that names features, of whatever layers have it.
+class NameField {
+  public:
+    NameField(const std::string& name, const std::string& path) : name_(name), path_(path) {}
+
+    std::string of(const OGRFeature& feature) {
+        if (name_.empty()) return {};
+        const int index = feature.GetFieldIndex(name_.c_str());
+        if (index < 0 && !found_) note_fields(feature);
+        found_ = found_ || index >= 0;
+        return index >= 0 && feature.IsFieldSetAndNotNull(index) ? feature.GetFieldAsString(index) : "";
+    }
+    void check() const {
+        if (!name_.empty() && !found_)
+            throw Error(Fault::bad_usage, path_, "has no attribute '" + name_ + "'",
+                        fields_.empty() ? "none: it has no attributes" : fields_);
+    }
+
+  private:
+    void note_fields(const OGRFeature& feature) {
+        if (!fields_.empty()) return;
+        for (int i = 0; i < std::min(feature.GetFieldCount(), 12); ++i)
+            fields_ += (i > 0 ? ", " : "") + std::string(feature.GetFieldDefnRef(i)->GetNameRef());
+    }
+
+    const std::string &name_, &path_;
+    bool found_ = false;
+    std::string fields_;
+};
+
 class GdalFeatureDriver : public FeatureDriver {
   public:
     GdalFeatureDriver() {
@@ -299,10 +379,12 @@ class GdalFeatureDriver : public FeatureDriver {
         std::map<const OGRGeomFieldDefn*, Placement> placements;
         const GdalMessages messages;
         std::int64_t features_read = 0;
+        NameField names(options.name_field, path);
         OGRLayer* layer = nullptr;
         while (const OGRFeatureUniquePtr feature{dataset->GetNextFeature(&layer, nullptr, nullptr, nullptr)}) {
             ++features_read;
             if (repeats(driver, *layer)) continue;
+            collector.begin_feature();
             for (int i = 0; i < feature->GetGeomFieldCount(); ++i) {
                 const OGRGeometry* geometry = feature->GetGeomFieldRef(i);
                 if (!geometry) continue;
@@ -313,9 +395,11 @@ class GdalFeatureDriver : public FeatureDriver {
                 at->second.set_heights(heights_of(driver, *feature));
                 collector.add(*geometry, at->second);
             }
+            collector.name_feature(names.of(*feature));
         }
         if (!messages.last().empty() || is_cut(driver, *dataset, features_read))
             throw Error(Fault::bad_data, path, "is damaged or cut short: " + messages.last(), vector_file);
+        names.check();
         return collector.take();
     }
 };
@@ -323,7 +407,7 @@ class GdalFeatureDriver : public FeatureDriver {
 }  // namespace
 }  // namespace planet
 
-extern "C" __attribute__((visibility("default"))) const planet::FeatureDriver* octaglobe_gdal_features_1() {
+extern "C" __attribute__((visibility("default"))) const planet::FeatureDriver* octaglobe_gdal_features_2() {
     static const planet::GdalFeatureDriver driver;
     return &driver;
 }

@@ -38,6 +38,7 @@ void set_style(float scale) {
     style.WindowRounding = style.FrameRounding = style.GrabRounding = 4;
     style.WindowBorderSize = 0;
     style.GrabMinSize = 12;
+    style.ScrollbarSize = 8;
     style.ScaleAllSizes(scale);
     ImVec4* c = style.Colors;
     c[ImGuiCol_Text] = color(ink);
@@ -48,6 +49,9 @@ void set_style(float scale) {
     c[ImGuiCol_FrameBgActive] = color(IM_COL32(255, 255, 255, 44));
     c[ImGuiCol_SliderGrab] = c[ImGuiCol_SliderGrabActive] = c[ImGuiCol_CheckMark] = color(accent);
     c[ImGuiCol_TextSelectedBg] = color(IM_COL32(255, 196, 84, 90));
+    c[ImGuiCol_Button] = c[ImGuiCol_FrameBg];
+    c[ImGuiCol_ButtonHovered] = c[ImGuiCol_FrameBgHovered];
+    c[ImGuiCol_ButtonActive] = c[ImGuiCol_FrameBgActive];
     c[ImGuiCol_Separator] = color(line);
 }
 
@@ -259,7 +263,7 @@ void PanelDrawing::draw_settings(Panels& panels) {
         ImGui::TextUnformatted(name);
         char text[32];
         std::snprintf(text, sizeof text, format, static_cast<double>(value));
-        ImGui::SameLine(unit(288) - ImGui::CalcTextSize(text).x);
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(text).x);
         ImGui::TextDisabled("%s", text);
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(unit(8), 0));
         ImGui::SetNextItemWidth(-1);
@@ -281,8 +285,40 @@ void PanelDrawing::draw_settings(Panels& panels) {
         }
     };
     switches("Layers", panels.layers);
+    draw_layer_rows(panels.own_layers);
     switches("Mesh", panels.modes);
     end_panel();
+}
+
+void PanelDrawing::draw_layer_rows(std::vector<LayerRow>& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        LayerRow& row = rows[i];
+        ImGui::PushID(static_cast<int>(i));
+        // The box is of the layer's colour, so that a name finds its lines.
+        ImGui::PushStyleColor(ImGuiCol_CheckMark, ImVec4(row.color[0], row.color[1], row.color[2], 1));
+        row.changed |= ImGui::Checkbox("##on", &row.on);
+        ImGui::PopStyleColor();
+        ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float height = ImGui::GetFrameHeight();
+        ImGui::PushClipRect(at, {at.x + unit(88), at.y + height}, true);
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted(row.name.c_str());
+        ImGui::PopClipRect();
+        ImGui::SameLine(unit(136));
+        ImGui::SetNextItemWidth(unit(88));
+        row.changed |= ImGui::SliderFloat("##opacity", &row.opacity, 0, 1, "%.2f", ImGuiSliderFlags_NoInput);
+        const auto arrow = [&](const char* id, ImGuiDir way, bool there, int raise) {
+            ImGui::SameLine(0, unit(4));
+            if (!there) return ImGui::Dummy({height, height});
+            if (!ImGui::ArrowButton(id, way)) return;
+            row.raise = raise;
+            row.changed = true;
+        };
+        arrow("##up", ImGuiDir_Up, i > 0, 1);
+        arrow("##down", ImGuiDir_Down, i + 1 < rows.size(), -1);
+        ImGui::PopID();
+    }
 }
 
 void PanelDrawing::draw_statistics(Panels& panels) {

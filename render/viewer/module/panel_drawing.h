@@ -33,6 +33,7 @@ class PanelDrawing {
     void draw_notice(const Panels& panels);
     void draw_help(Panels& panels);
     void draw_settings(Panels& panels);
+    void draw_layer_rows(std::vector<LayerRow>& rows);
     void draw_statistics(Panels& panels);
     void draw_go_to(Panels& panels);
     bool begin_panel(const char* title, float x, float y, float pivot_x, float pivot_y, float width);

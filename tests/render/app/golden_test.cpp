@@ -41,6 +41,10 @@ constexpr GoldenPicture golden_pictures[] = {
     {"mesh",
      "--at 37.58,-105.49 --range 30km --pitch -40 --exaggeration 2 --show mesh,levels --max-pixel-deviation 4"
      " --time 2026-06-21T16:00:00Z"},
+    {"layers",
+     "--at 37.56,-105.47 --range 12km --heading 20 --pitch -22 --time 2026-06-21T15:00:00Z "
+     "--layer " OCTAGLOBE_SOURCE_DIR "/tests/golden/layers.geojson,width=3"},
+    {"relief", "--at 40,60 --range 9000km --time 2026-06-21T08:00:00Z --show relief,coastlines,borders"},
 };
 
 bool renewing() {

@@ -159,10 +159,17 @@ Pose pose_of_line(const std::string& line) {
             parse_angle("--pitch", value_of(line, "--pitch"), {-90, 90})};
 }
 
+constexpr const char* track =
+    R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":"Ridge"},"geometry":)"
+    R"({"type":"LineString","coordinates":[[-105.52,37.55],[-105.49,37.58],[-105.45,37.6]]}},{"type":"Feature",)"
+    R"("properties":{"name":"Area"},"geometry":{"type":"Polygon","coordinates":[[[-105.5,37.56],[-105.46,37.56],)"
+    R"([-105.47,37.59],[-105.5,37.56]]]}}]})";
+
 class SettledView : public ViewCommand, public testing::WithParamInterface<const char*> {};
 
 // The view as a command line gives the picture that the window shows.
 TEST_P(SettledView, IsThePictureOfItsCommandLine) {
+    std::ofstream(folder_ / "track.geojson") << track;
     const auto view = report(std::string(GetParam()) + " --bare --size 240x136 --screenshot window.png");
     ASSERT_TRUE(view.contains("view"));
     EXPECT_TRUE(view["settled"].get<bool>());
@@ -182,7 +189,40 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         "", "--at 37.58,-105.49 --range 20km --heading 30 --pitch -15 --show graticule",
         "--at 89.5,20 --range 900km --pitch -50 --exaggeration 3 --show mesh,levels --max-pixel-deviation 3",
-        "--at 37.58,-105.49 --range 60km --pitch -40 --max-triangles 9000"));
+        "--at 37.58,-105.49 --range 60km --pitch -40 --max-triangles 9000",
+        "--at 37.58,-105.49 --range 12km --heading 30 --pitch -20 --show coastlines,relief "
+        "--layer track.geojson,width=3,opacity=0.8,label=name"));
+
+/// Where the only layer's row is in the panel, pixels of the window.
+constexpr glm::ivec2 layer_row_box{43, 377}, layer_row_slider{190, 377};
+
+// The panel's box of the only layer: off, it is no longer in the line; on, it is; its slider changes the opacity.
+TEST_F(ViewCommand, ThePanelSwitchesLayers) {
+    std::ofstream(folder_ / "track.geojson") << track;
+    Process process = view("--at 37.58,-105.49 --range 40km --size 640x560 --layer track.geojson");
+    EXPECT_EQ(value_of(wait_for_globe(process), "--layer"), "track.geojson,color=#ffcc00");
+    type({"key", "Tab"});
+    rest(300ms);
+    const auto click = [](int x, int y) {
+        type({"mousemove", std::to_string(x), std::to_string(y)});
+        rest(100ms);
+        type({"mousedown", "1"});
+        rest(100ms);
+        type({"mouseup", "1"});
+        rest(300ms);
+    };
+    click(layer_row_box.x, layer_row_box.y);
+    EXPECT_EQ(value_of(copy_view(process), "--layer"), "");
+    click(layer_row_box.x, layer_row_box.y);
+    EXPECT_EQ(value_of(copy_view(process), "--layer"), "track.geojson,color=#ffcc00");
+    click(layer_row_slider.x, layer_row_slider.y);
+    EXPECT_NE(value_of(copy_view(process), "--layer").find(",opacity=0."), std::string::npos);
+    type({"key", "o"});
+    type({"key", "i"});
+    EXPECT_EQ(value_of(copy_view(process), "--show"), "coastlines,relief");
+    type({"key", "ctrl+q"});
+    EXPECT_EQ(process.wait().status, 0);
+}
 
 // 1,000 frames that each turn the view: no OpenGL error, and no memory but what caches may take.
 TEST_F(ViewCommand, AThousandFramesLeakNothing) {

@@ -1,0 +1,26 @@
+#version 450 core
+#include "grid.glsl"
+
+layout(location = 2) in vec3 normal;   ///< ecef, unit
+layout(location = 3) in float height;  ///< m above the geoid, not exaggerated
+
+layout(location = 4) in vec4 own;      ///< linear colour
+
+uniform mat4 clip_from_ecef;
+uniform float lift;  ///< m: drawn as if it were nearer by that much, where depths are compared
+
+out vec3 view;
+out vec3 ground;
+out float orthometric;
+out vec3 own_color;
+invariant gl_Position;
+
+void main() {
+    view = view_from_grid();
+    gl_Position = clip_from_ecef * vec4(view, 1.0);
+    float w = gl_Position.w;
+    if (w > 0.0) gl_Position.z *= w / (w - min(lift, 0.03 * w));
+    ground = normal;
+    orthometric = height;
+    own_color = own.rgb;
+}
