@@ -1,12 +1,7 @@
 // What `octaglobe tin` refuses: one line that says what, where and what would be accepted, the right exit status, and
 // nothing left behind.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <ostream>
-
-#include "tests/render/app/program_process.h"
+#include "tests/render/app/refusals.h"
 #include "tests/render/app/terrain_files.h"
 
 namespace render {
@@ -44,31 +39,12 @@ void write_inputs(const ScratchFolder& folder) {
     std::filesystem::create_directory(folder / "folder.ply");
 }
 
-struct Refusal {
-    const char* arguments;
-    int status;
-    const char* line;      ///< what the line begins with, after "octaglobe: "
-    const char* accepted;  ///< what it says would be accepted, or a part of that
-};
-void PrintTo(const Refusal& refusal, std::ostream* out) {
-    *out << refusal.arguments;
-}
-
 class TinRefusals : public testing::TestWithParam<Refusal> {};
 
 TEST_P(TinRefusals, OneLineAndNoFile) {
     const ScratchFolder folder;
     write_inputs(folder);
-    const auto before = folder.names();
-    const Outcome outcome = run(folder.path(), words("tin " + std::string(GetParam().arguments)));
-    EXPECT_EQ(outcome.status, GetParam().status);
-    EXPECT_TRUE(outcome.err.starts_with("octaglobe: " + std::string(GetParam().line))) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    const auto accepted = outcome.err.find("; accepted: ");
-    ASSERT_NE(accepted, std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find(GetParam().accepted, accepted), std::string::npos) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(folder.names(), before);
+    expect_one_line_and_no_file(folder, "tin", GetParam());
 }
 
 constexpr Refusal rasters[] = {
@@ -101,7 +77,7 @@ constexpr Refusal bounds[] = {
     {"dem.vrt --max-deviation 1e300 -o t.ply", 2, "--max-deviation: '1e300' is out of range", "0 to"},
     {"dem.vrt --max-deviation 0 -o t.glb", 2, "--max-deviation: 0 m cannot be kept in a .glb", ".ply"},
     {"dem.vrt --max-deviation 0 -o t.stl", 2, "--max-deviation: 0 m cannot be kept in a .stl", ".ply"},
-    {"dem.vrt --max-deviation 0 --tile 9 -o out", 2, "--max-deviation: 0 m cannot be kept in such tiles", "ply"},
+    {"dem.vrt --max-deviation 0 --tile 9 -o out", 2, "--max-deviation: 0 m cannot be kept in a .glb", "ply"},
     {"dem.vrt --max-triangles 1 -o t.ply", 2, "--max-triangles: '1' is out of range", "a whole number 2 to"},
     {"dem.vrt --max-triangles 99999999999999999999 -o t.ply", 2, "--max-triangles: ", "a whole number"},
     {"dem.vrt --max-triangles 9 --features in.geojson far.geojson --mask in.geojson -o t.ply", 3,
@@ -144,11 +120,13 @@ constexpr Refusal outputs[] = {
     {"dem.vrt --max-deviation 9 --tile 1 -o out", 2, "--tile: '1' is out of range", "2 to 16384"},
     {"huge.vrt --max-deviation 9 --tile 2 -o out", 2, "--tile: 900000000 tiles are too many", "larger ones"},
     {"dem.vrt --max-deviation 9 --tile 9 --json r.json", 2, "--tile: without a folder", "-o FOLDER"},
-    {"dem.vrt --max-triangles 9 --tile 9 -o out", 2, "--tile: without a bound", "--max-deviation"},
-    {"dem.vrt --max-deviation 9 --max-triangles 9 --tile 9 -o out", 2, "--tile: goes with no budget", "alone"},
-    {"dem.vrt --max-deviation 9 --features in.geojson --tile 9 -o out", 2, "--tile: goes with no features", "without"},
+    {"dem.vrt --max-triangles 9 --tile 9 -o out", 2, "--max-triangles: 9 are fewer than the tiles need", "40 or more"},
+    {"dem.vrt --max-deviation 9 --features out.geojson --tile 9 -o out", 3, "out.geojson: has nothing on",
+     "within dem"},
     {"dem.vrt --max-deviation 9 --metric rms --tile 9 -o out", 2, "--tile: goes with the local metric", "local"},
-    {"dem.vrt --max-deviation 9 --base 9 --tile 9 -o out", 2, "--tile: goes with no solid", "without"},
+    {"dem.vrt --max-deviation 9 --picture p.png --tile 9 -o out", 2, "--tile: goes with no picture", "without"},
+    {"dem.vrt --max-deviation 9 --drape picture.png --base 9 --tile 9 -o out", 2, "--drape: goes with no solid",
+     "--base"},
     {"dem.vrt --max-deviation 9 --tile 9 -o no/out", 2, "--output: ", "a new folder"},
     {"dem.vrt --max-deviation 9 --tile 9 -o dem.vrt", 2, "--output: ", "a new folder"},
     {"dem.vrt --max-deviation 9 --format ply -o t.ply", 2, "tin: --format requires --tile", "--help"},
