@@ -79,10 +79,10 @@ class LengthQueue {
             for (const std::size_t end = std::min(next_ + distance, sorted_.size()); done < end; ++done)
                 fetch(sorted_[done].leaf);
         };
-        ahead(fetched_[0], 32, [&](Index t) { mesh_.prefetch_leaf(t); });
-        ahead(fetched_[1], 24, [&](Index t) { mesh_.prefetch_around(t); });
-        ahead(fetched_[2], 16, [&](Index t) { mesh_.prefetch_beyond(t); });
-        ahead(fetched_[3], 8, [&](Index t) { mesh_.prefetch_flip_beyond(t); });
+        ahead(fetched_[0], 16, [&](Index t) { mesh_.prefetch_leaf(t); });
+        ahead(fetched_[1], 12, [&](Index t) { mesh_.prefetch_around(t); });
+        ahead(fetched_[2], 8, [&](Index t) { mesh_.prefetch_beyond(t); });
+        ahead(fetched_[3], 4, [&](Index t) { mesh_.prefetch_flip_beyond(t); });
     }
 
     // Sorts the next bucket in which anything is left.

@@ -162,8 +162,9 @@ bool Progressive::append(std::span<const SplitRecord> records, Place&& place) {
     for (std::size_t i = end - linked; i < end; ++i) {
         const auto& next = splits_[std::min(i + ahead, end - 1)].corner;
         for (const Index v : {next[0], next[1]}) {
-            __builtin_prefetch(&places_[v].x);
-            __builtin_prefetch(&places_[v].z);
+            const glm::dvec3* const end_place = places_.data() + v;  // perhaps yet to come
+            __builtin_prefetch(&end_place->x);
+            __builtin_prefetch(&end_place->z);
         }
         places_.push_back(place(midpoint(splits_[i].corner[0], splits_[i].corner[1])));
     }
