@@ -55,8 +55,8 @@ class LengthQueue {
     }
 
     std::size_t bytes() const {
-        std::size_t sum =
-            buckets_.capacity() * sizeof buckets_[0] + (sorted_.capacity() + late_.capacity()) * sizeof(Entry);
+        std::size_t sum = buckets_.capacity() * sizeof buckets_[0] +
+                          (unsorted_.capacity() + sorted_.capacity() + late_.capacity()) * sizeof(Entry);
         for (const auto& b : buckets_) sum += b.capacity() * sizeof(Index);
         return sum;
     }
@@ -84,7 +84,7 @@ class LengthQueue {
         ahead(fetched_[2], 8, [&](Index t) { mesh_.prefetch_beyond(t); });
     }
 
-    // Sorts the next bucket in which anything is left. One of two leaves that share their longest sides is enough.
+    // Sorts the next bucket in which anything is left.
     bool advance() {
         sorted_.clear();
         next_ = 0;
@@ -92,21 +92,39 @@ class LengthQueue {
         for (std::size_t b = current_ == buckets_.size() ? 0 : current_ + 1; b < buckets_.size(); ++b) {
             if (buckets_[b].empty()) continue;
             current_ = b;
-            for (std::size_t i = 0; i < buckets_[b].size(); ++i) {
-                if (i + 16 < buckets_[b].size()) mesh_.prefetch_leaf(buckets_[b][i + 16]);
-                const Index t = buckets_[b][i];
-                const Leaf& leaf = mesh_[t];
-                if (top_ - place_of(leaf.squared[0]) != b) continue;
-                const Index n = leaf.beyond[0];
-                if (n == LeafMesh::none || n > t || !LeafMesh::mutual(leaf, mesh_[n]))
-                    sorted_.push_back({leaf.squared[0], t});
-            }
+            collect(buckets_[b]);
             std::vector<Index>().swap(buckets_[b]);
-            std::sort(sorted_.begin(), sorted_.end(), [](const Entry& x, const Entry& y) { return y < x; });
+            sort();
             if (!sorted_.empty()) return true;
         }
         current_ = buckets_.size() - 1;
         return false;
+    }
+    // What is still in the bucket. One of two leaves that share their longest sides is enough.
+    void collect(const std::vector<Index>& bucket) {
+        unsorted_.clear();
+        for (std::size_t i = 0; i < bucket.size(); ++i) {
+            if (i + 16 < bucket.size()) mesh_.prefetch_leaf(bucket[i + 16]);
+            const Index t = bucket[i];
+            const Leaf& leaf = mesh_[t];
+            if (top_ - place_of(leaf.squared[0]) != current_) continue;
+            const Index n = leaf.beyond[0];
+            if (n == LeafMesh::none || n > t || !LeafMesh::mutual(leaf, mesh_[n]))
+                unsorted_.push_back({leaf.squared[0], t});
+        }
+    }
+    // By the next bits of the mantissa first, of which each value has few entries.
+    void sort() {
+        const auto rank = [](const Entry& e) { return ~(std::bit_cast<std::uint64_t>(e.squared) >> 35) & 1023; };
+        std::array<std::uint32_t, 1025> end{};
+        for (const Entry& e : unsorted_) ++end[rank(e) + 1];
+        for (std::size_t i = 1; i < end.size(); ++i) end[i] += end[i - 1];
+        sorted_.resize(unsorted_.size());
+        for (const Entry& e : unsorted_) sorted_[end[rank(e)]++] = e;
+        for (std::size_t i = 0, begin = 0; i + 1 < end.size(); begin = end[i++])
+            if (end[i] - begin > 1)
+                std::sort(sorted_.begin() + static_cast<std::ptrdiff_t>(begin), sorted_.begin() + end[i],
+                          [](const Entry& x, const Entry& y) { return y < x; });
     }
 
     const LeafMesh& mesh_;
@@ -114,7 +132,7 @@ class LengthQueue {
     std::uint32_t top_;                        ///< place of the longest
     std::vector<std::vector<Index>> buckets_;  ///< longest first
     std::size_t current_;                      ///< bucket that is sorted; their number before the first
-    std::vector<Entry> sorted_;                ///< the longest first
+    std::vector<Entry> unsorted_, sorted_;     ///< of that bucket, the longest first
     std::size_t next_ = 0;
     std::array<std::size_t, 3> fetched_{};  ///< leaves of the sorted ones for which each prefetch was done
     std::vector<Entry> late_;               ///< a heap: those that came when their bucket was sorted already

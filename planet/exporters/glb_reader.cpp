@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 namespace planet {
 namespace {
 
+using namespace nlohmann::literals;
 using Json = nlohmann::json;
 using Bytes = std::span<const std::uint8_t>;
 
@@ -113,6 +115,7 @@ class GlbScene {
     ReadMesh read() {
         walk();
         for (glm::dvec3& v : read_.mesh.vertices) v = {v.x, 0 - v.z, v.y};
+        for (glm::vec3& n : read_.looks.normals) n = {n.x, 0 - n.z, n.y};
         read_reference();
         return std::move(read_);
     }
@@ -190,6 +193,7 @@ class GlbScene {
         const std::size_t base = read_.mesh.vertices.size();
         const std::size_t vertices =
             add_vertices(accessor(whole(primitive.at("attributes"), "POSITION"), "VEC3", 3), scene_from_node);
+        add_looks(primitive, vertices, scene_from_node);
         std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
         for (std::uint32_t& corner : corners) corner += static_cast<std::uint32_t>(base);
         const bool mirrored = glm::determinant(glm::dmat3(scene_from_node)) < 0;
@@ -212,6 +216,67 @@ class GlbScene {
             vertices.push_back(scene_from_node * glm::dvec4(p[0], p[1], p[2], 1));
         }
         return positions.count;
+    }
+
+    // An attribute that a part of the scene lacks ends up shorter than the vertices, and so as none.
+    void add_looks(const Json& primitive, std::size_t vertices, const glm::dmat4& scene_from_node) {
+        const Json& attributes = primitive.at("attributes");
+        MeshLooks& looks = read_.looks;
+        if (attributes.contains("NORMAL")) {
+            const glm::dmat3 scene_from_normal = glm::transpose(glm::inverse(glm::dmat3(scene_from_node)));
+            const std::size_t first = looks.normals.size();
+            append(looks.normals, accessor(whole(attributes, "NORMAL"), "VEC3", 3), vertices, 3);
+            for (std::size_t i = first; i < looks.normals.size(); ++i) {
+                const glm::dvec3 n = scene_from_normal * glm::dvec3(looks.normals[i]);
+                const double length = glm::length(n);
+                looks.normals[i] = length > 0 && std::isfinite(length) ? glm::vec3(n / length) : glm::vec3(0);
+            }
+        }
+        if (attributes.contains("TEXCOORD_0"))
+            append(looks.uv, accessor(whole(attributes, "TEXCOORD_0"), "VEC2", 2), vertices, 2);
+        if (attributes.contains("COLOR_0")) {
+            const std::size_t index = whole(attributes, "COLOR_0");
+            const int numbers = json_.at("accessors").at(index).at("type") == "VEC3" ? 3 : 4;
+            const Accessor colors = accessor(index, numbers == 3 ? "VEC3" : "VEC4", static_cast<std::size_t>(numbers));
+            append(looks.colors, colors, vertices, numbers);
+        }
+        if (looks.picture.empty()) read_picture(primitive);
+    }
+
+    // Floats, or shares of the largest whole number. What is not given is 1.
+    template <class Vector>
+    static void append(std::vector<Vector>& out, const Accessor& a, std::size_t vertices, int numbers) {
+        if (a.count != vertices) throw MalformedBytes("an attribute has not one element a vertex");
+        if (a.component_type != type_float && a.component_type != type_byte && a.component_type != type_short)
+            throw MalformedBytes("an attribute has numbers of an unknown type");
+        for (std::size_t i = 0; i < vertices; ++i) {
+            Vector v(1);
+            for (int k = 0; k < numbers; ++k) {
+                const std::size_t at = i * a.stride + static_cast<std::size_t>(k) * component_bytes(a.component_type);
+                v[k] = a.component_type == type_float ? number_at<float>(a.bytes, at)
+                       : a.component_type == type_byte
+                           ? static_cast<float>(a.bytes[at]) / 255
+                           : static_cast<float>(number_at<std::uint16_t>(a.bytes, at)) / 65535;
+            }
+            out.push_back(v);
+        }
+    }
+
+    // The base colour of its material, if it is in the file.
+    void read_picture(const Json& primitive) {
+        if (!primitive.contains("material")) return;
+        const Json& material = json_.at("materials").at(whole(primitive, "material"));
+        const Json pointer = material.value("/pbrMetallicRoughness/baseColorTexture"_json_pointer, Json());
+        if (!pointer.is_object()) return;
+        const Json& texture = json_.at("textures").at(whole(pointer, "index"));
+        if (!texture.contains("source")) return;
+        const Json& image = json_.at("images").at(whole(texture, "source"));
+        if (!image.contains("bufferView")) return;
+        const Json& view = json_.at("bufferViews").at(whole(image, "bufferView"));
+        const std::size_t offset = whole(view, "byteOffset", 0), length = whole(view, "byteLength");
+        if (offset > binary_.size() || length > binary_.size() - offset)
+            throw MalformedBytes("a picture reaches beyond its end");
+        read_.looks.picture.assign(reinterpret_cast<const char*>(binary_.data()) + offset, length);
     }
 
     std::vector<std::uint32_t> corners_of(const Json& primitive, std::size_t vertices) {

@@ -64,7 +64,7 @@ struct Layout {
     glm::vec3 low{0}, high{0};  ///< of the offsets
     std::size_t vertices = 0, indices = 0;
     bool short_indices = false;
-    Part positions{}, corners{}, normals{}, uv{}, picture{};
+    Part positions{}, corners{}, normals{}, uv{}, colors{}, picture{};
     std::size_t bytes = 0;  ///< of all, without padding behind the last
 
     void place(const MeshLooks& looks) {
@@ -77,6 +77,7 @@ struct Layout {
         put(corners, (short_indices ? 2 : 4) * indices);
         put(normals, 12 * looks.normals.size());
         put(uv, 8 * looks.uv.size());
+        put(colors, 16 * looks.colors.size());
         put(picture, looks.picture.size());
     }
 };
@@ -156,10 +157,11 @@ std::string json_of(const Layout& layout, const MeshReference& reference, const 
         arrays.add(layout.corners, "SCALAR", layout.short_indices ? shorts : ints, layout.indices);
     if (layout.normals.bytes > 0) attributes["NORMAL"] = arrays.add(layout.normals, "VEC3", floats, layout.vertices);
     if (layout.uv.bytes > 0) attributes["TEXCOORD_0"] = arrays.add(layout.uv, "VEC2", floats, layout.vertices);
+    if (layout.colors.bytes > 0) attributes["COLOR_0"] = arrays.add(layout.colors, "VEC4", floats, layout.vertices);
     const Json primitive{{"attributes", attributes}, {"indices", corners}, {"material", 0}, {"mode", 4}};
     gltf["meshes"] = Json::array({{{"name", "terrain"}, {"primitives", Json::array({primitive})}}});
     const bool draped = layout.picture.bytes > 0;
-    const double grey = draped ? 1 : 0.6;
+    const double grey = draped || layout.colors.bytes > 0 ? 1 : 0.6;
     Json surface{{"baseColorFactor", {grey, grey, grey, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
     if (draped) put_picture(gltf, surface, layout, looks, arrays);
     gltf["materials"] = Json::array({{{"name", "terrain"}, {"pbrMetallicRoughness", surface}}});
@@ -185,6 +187,7 @@ void put_indices(BlockWriter& out, const SurfaceMesh& mesh, bool short_indices) 
 void put_looks(BlockWriter& out, const MeshLooks& looks, const Layout& layout) {
     for (const glm::vec3& n : looks.normals) out.put(glm::vec3(n.x, n.z, 0 - n.y));
     out.put_bytes(bytes_of(looks.uv));
+    out.put_bytes(bytes_of(looks.colors));
     out.put_bytes(looks.picture);
     put_padding(out, layout.picture);
 }
@@ -193,8 +196,6 @@ void put_looks(BlockWriter& out, const MeshLooks& looks, const Layout& layout) {
 
 void write_glb(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference,
                const std::optional<MeshRounding>& rounding, const MeshLooks& looks) {
-    assert(looks.normals.empty() || looks.normals.size() == mesh.vertices.size());
-    assert(looks.uv.empty() || looks.uv.size() == mesh.vertices.size());
     Layout layout = layout_of(mesh);
     layout.place(looks);
     std::string json = json_of(layout, reference, rounding, looks);

@@ -7,6 +7,9 @@
 //   .glb   float offsets on a grid    all but degrees                   asset.extras
 //   .stl   float                      enu                               the 80 bytes of its header, cut off
 //
+// Attributes of vertices (MeshLooks) are in a .glb as NORMAL, TEXCOORD_0 and COLOR_0, in a .ply as nx ny nz, s t and red green
+// blue alpha, in an .obj as vn, vt and three numbers more behind v; an .stl has none.
+//
 // A .glb is y-up as glTF wants: its (x, y, z) are (x, z, -y) of the frame, for enu and utm east, up, south. So they are for
 // ecef, which is how 3D Tiles reads a .glb: ecef = (x, -z, y). The root node's translation, in double, is the origin of the
 // float offsets. Vertices and origin lie on one grid of a power of two on which each coordinate spans at most 24 bits, sign
@@ -50,11 +53,13 @@ MeshRounding rounding_bound(const glm::dvec3& low, const glm::dvec3& high, const
 MeshRounding round_to_format(SurfaceMesh& mesh, const MeshReference& reference, MeshFormat format,
                              double least_step = 0);
 
-/// What a .glb holds besides places and triangles; other formats leave it out.
+/// What a file holds besides places and triangles; an .stl leaves it out, and only a .glb holds a picture.
 struct MeshLooks {
-    std::vector<glm::vec3> normals;  ///< by vertex, of unit length, in the frame; or empty
-    std::vector<glm::vec2> uv;       ///< by vertex, from the top left corner of the picture; or empty
-    std::string picture;             ///< the bytes of a PNG or JPEG file; or empty
+    std::vector<glm::vec3> normals = {};  ///< by vertex, of unit length, in the frame; or empty
+    std::vector<glm::vec2> uv = {};       ///< by vertex, from the top left corner of the picture; or empty
+    /// By vertex, red, green, blue, alpha, 0..1, as the file has them; or empty. A .ply holds 8 bits of each, an .obj no alpha.
+    std::vector<glm::vec4> colors = {};
+    std::string picture = {};  ///< the bytes of a PNG or JPEG file; or empty
 };
 
 /// Takes the bytes of a file in order, some 1 MB or more at a time. What it throws passes through write_mesh().
@@ -62,7 +67,7 @@ using ByteSink = std::function<void(std::string_view)>;
 
 /// Writes triangles in the order of the mesh; levels and strips are not written. Needs no memory to speak of.
 /// @param mesh     as round_to_format() left it. Else each coordinate becomes the nearest one that the format holds.
-/// @param rounding what round_to_format() said: a .glb tells it. @param looks of a .glb
+/// @param rounding what round_to_format() said: a .glb tells it. @param looks of a .glb, .ply or .obj
 /// Throws as check_frame() does, Error(bad_data) for a mesh without triangles, too large for the format, or (.glb, .stl)
 /// with coordinates beyond 1e30.
 void write_mesh(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference, MeshFormat format,
@@ -75,10 +80,13 @@ void write_mesh(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReferen
 ///   .stl   binary and ascii; corners at the same place become one vertex
 /// Triangles are as the file has them: nothing is joined, turned or left out. Levels and strips stay empty.
 /// @param reference if given, what the file says of its coordinates, as far as it does.
+/// @param looks if given, the attributes that all vertices have. Of an .obj vertex with several normals or texture coordinates
+///              these are those of its first corner. The picture is that of a .glb's first triangles.
 /// Throws Error(bad_data) for a file that is not there, damaged, has no triangles, coordinates that are not finite, or so
 /// many instances that it has more vertices than bytes. Memory stays within some 100 times the file's size.
-SurfaceMesh read_mesh(const std::string& path, MeshReference* reference = nullptr);
+SurfaceMesh read_mesh(const std::string& path, MeshReference* reference = nullptr, MeshLooks* looks = nullptr);
 /// The same of a file whose name may end in anything.
-SurfaceMesh read_mesh(const std::string& path, MeshFormat format, MeshReference* reference = nullptr);
+SurfaceMesh read_mesh(const std::string& path, MeshFormat format, MeshReference* reference = nullptr,
+                      MeshLooks* looks = nullptr);
 
 }  // namespace planet

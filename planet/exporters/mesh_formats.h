@@ -14,13 +14,14 @@ static_assert(std::endian::native == std::endian::little, "arrays are written as
 // Writers. The mesh has triangles, and the format holds the frame.
 void write_glb(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference,
                const std::optional<MeshRounding>& rounding, const MeshLooks& looks);
-void write_ply(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference);
-void write_obj(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference);
+void write_ply(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference, const MeshLooks& looks);
+void write_obj(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference, const MeshLooks& looks);
 void write_stl(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReference& reference);
 
 struct ReadMesh {
     SurfaceMesh mesh;
     MeshReference reference;
+    MeshLooks looks = {};  ///< arrays of other lengths than that of the vertices are none
 };
 
 // Readers, of a whole file. They throw MalformedBytes; read_mesh() checks indices and coordinates.

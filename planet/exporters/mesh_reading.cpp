@@ -55,17 +55,36 @@ void check(const SurfaceMesh& mesh) {
             throw MalformedBytes("a coordinate is not finite");
 }
 
-}  // namespace
-
-SurfaceMesh read_mesh(const std::string& path, MeshReference* reference) {
-    return read_mesh(path, mesh_format(path), reference);
+// An attribute that some vertices lack is none.
+template <class Vector>
+void settle(std::vector<Vector>& attribute, std::size_t vertices) {
+    if (attribute.size() != vertices) attribute.clear();
+    for (const Vector& value : attribute)
+        for (int i = 0; i < Vector::length(); ++i)
+            if (!std::isfinite(value[i])) throw MalformedBytes("an attribute of a vertex is not finite");
 }
 
-SurfaceMesh read_mesh(const std::string& path, MeshFormat format, MeshReference* reference) {
+void settle(MeshLooks& looks, std::size_t vertices) {
+    settle(looks.normals, vertices);
+    settle(looks.uv, vertices);
+    settle(looks.colors, vertices);
+}
+
+}  // namespace
+
+SurfaceMesh read_mesh(const std::string& path, MeshReference* reference, MeshLooks* looks) {
+    return read_mesh(path, mesh_format(path), reference, looks);
+}
+
+SurfaceMesh read_mesh(const std::string& path, MeshFormat format, MeshReference* reference, MeshLooks* looks) {
     try {
         ReadMesh found = read(bytes_of_file(path), format);
         check(found.mesh);
         if (reference) *reference = std::move(found.reference);
+        if (looks) {
+            settle(found.looks, found.mesh.vertices.size());
+            *looks = std::move(found.looks);
+        }
         return std::move(found.mesh);
     } catch (const MalformedBytes& e) {
         throw Error(Fault::bad_data, path, e.what(), a_mesh_file);

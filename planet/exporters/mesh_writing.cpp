@@ -105,13 +105,16 @@ void write_mesh(const ByteSink& sink, const SurfaceMesh& mesh, const MeshReferen
                 const std::optional<MeshRounding>& rounding, const MeshLooks& looks) {
     check_frame(reference, format);
     check_triangles(mesh, format);
+    assert(looks.normals.empty() || looks.normals.size() == mesh.vertices.size());
+    assert(looks.uv.empty() || looks.uv.size() == mesh.vertices.size());
+    assert(looks.colors.empty() || looks.colors.size() == mesh.vertices.size());
     switch (format) {
         case MeshFormat::glb:
             return write_glb(sink, mesh, reference, rounding, looks);
         case MeshFormat::ply:
-            return write_ply(sink, mesh, reference);
+            return write_ply(sink, mesh, reference, looks);
         case MeshFormat::obj:
-            return write_obj(sink, mesh, reference);
+            return write_obj(sink, mesh, reference, looks);
         case MeshFormat::stl:
             return write_stl(sink, mesh, reference);
     }

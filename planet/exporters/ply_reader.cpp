@@ -83,24 +83,66 @@ void skip(Scalars& in, const PlyProperty& property) {
     for (std::uint32_t i = 0; i < count; ++i) in.next(property.type);
 }
 
+// A number of a vertex: a coordinate, or part of an attribute.
+struct VertexPart {
+    enum Kind { other, place, normal, uv, color } kind = other;
+    int axis = 0;
+    double scale = 1;
+};
+constexpr int parts_of_kind[] = {0, 3, 3, 2, 3};  // that make it whole; alpha may be missing
+
+VertexPart part_from(const PlyProperty& p) {
+    struct Name {
+        std::string_view name;
+        VertexPart::Kind kind;
+        int axis;
+    };
+    using enum VertexPart::Kind;
+    static constexpr Name names[] = {{"x", place, 0},   {"y", place, 1},     {"z", place, 2},      {"nx", normal, 0},
+                                     {"ny", normal, 1}, {"nz", normal, 2},   {"s", uv, 0},         {"t", uv, 1},
+                                     {"u", uv, 0},      {"v", uv, 1},        {"texture_u", uv, 0}, {"texture_v", uv, 1},
+                                     {"red", color, 0}, {"green", color, 1}, {"blue", color, 2},   {"alpha", color, 3}};
+    const auto found =
+        std::find_if(std::begin(names), std::end(names), [&](const Name& n) { return n.name == p.name; });
+    if (p.is_list || found == std::end(names)) return {};
+    VertexPart part{found->kind, found->axis, 1};
+    if (part.kind == color && p.type == PlyType::u8) part.scale = 1 / 255.0;
+    if (part.kind == color && p.type == PlyType::u16) part.scale = 1 / 65535.0;
+    return part;
+}
+
 template <class Scalars>
-void read_vertices(Scalars& in, const PlyElement& element, SurfaceMesh& mesh) {
+void read_vertices(Scalars& in, const PlyElement& element, SurfaceMesh& mesh, MeshLooks& looks) {
     mesh.vertices.reserve(element.count);
     for (const char* axis : {"x", "y", "z"})
         if (std::none_of(element.properties.begin(), element.properties.end(),
                          [&](const PlyProperty& p) { return p.name == axis && !p.is_list; }))
             throw MalformedBytes(std::string("its vertices have no ") + axis);
-    std::vector<int> axes;  // by property; -1: none
-    for (const PlyProperty& p : element.properties)
-        axes.push_back(p.is_list || p.name.size() != 1 || p.name < "x" || p.name > "z" ? -1 : p.name[0] - 'x');
+    std::vector<VertexPart> parts;  // by property
+    unsigned had[5] = {};           // by kind: which of its parts there are
+    for (const PlyProperty& p : element.properties) {
+        parts.push_back(part_from(p));
+        had[parts.back().kind] |= 1u << parts.back().axis;
+    }
+    const auto whole_kind = [&](VertexPart::Kind kind) {
+        const unsigned all = (1u << parts_of_kind[kind]) - 1;
+        return (had[kind] & all) == all;
+    };
+    const bool normals = whole_kind(VertexPart::normal), uv = whole_kind(VertexPart::uv),
+               colors = whole_kind(VertexPart::color);
     for (std::uint64_t i = 0; i < element.count; ++i) {
-        glm::dvec3& v = mesh.vertices.emplace_back();
-        for (std::size_t k = 0; k < axes.size(); ++k) {
-            if (axes[k] >= 0)
-                v[axes[k]] = in.next(element.properties[k].type);
-            else
+        glm::dvec4 value[5] = {};
+        value[VertexPart::color].a = 1;
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            if (parts[k].kind == VertexPart::other)
                 skip(in, element.properties[k]);
+            else
+                value[parts[k].kind][parts[k].axis] = parts[k].scale * in.next(element.properties[k].type);
         }
+        mesh.vertices.emplace_back(value[VertexPart::place]);
+        if (normals) looks.normals.emplace_back(value[VertexPart::normal]);
+        if (uv) looks.uv.emplace_back(value[VertexPart::uv].x, 1 - value[VertexPart::uv].y);  // from the bottom left
+        if (colors) looks.colors.emplace_back(value[VertexPart::color]);
     }
 }
 
@@ -123,7 +165,7 @@ void read_faces(Scalars& in, const PlyElement& element, SurfaceMesh& mesh) {
 }
 
 template <class Scalars>
-void read_body(Scalars in, const PlyHeader& header, SurfaceMesh& mesh) {
+void read_body(Scalars in, const PlyHeader& header, ReadMesh& read) {
     for (const PlyElement& element : header.elements) {
         if (element.properties.empty()) continue;
         // Before anything of that size is allocated or counted.
@@ -131,9 +173,9 @@ void read_body(Scalars in, const PlyHeader& header, SurfaceMesh& mesh) {
             throw MalformedBytes("it ends early: there is no room for " + std::to_string(element.count) +
                                  " of its element " + shown_word(element.name));
         if (element.name == "vertex") {
-            read_vertices(in, element, mesh);
+            read_vertices(in, element, read.mesh, read.looks);
         } else if (element.name == "face") {
-            read_faces(in, element, mesh);
+            read_faces(in, element, read.mesh);
         } else {
             for (std::uint64_t i = 0; i < element.count; ++i)
                 for (const PlyProperty& p : element.properties) skip(in, p);
@@ -149,13 +191,13 @@ ReadMesh read_ply(std::span<const std::uint8_t> file) {
     ReadMesh read;
     switch (header.encoding) {
         case PlyEncoding::ascii:
-            read_body(AsciiScalars(text), header, read.mesh);
+            read_body(AsciiScalars(text), header, read);
             break;
         case PlyEncoding::little_endian:
-            read_body(BinaryScalars<false>(text), header, read.mesh);
+            read_body(BinaryScalars<false>(text), header, read);
             break;
         case PlyEncoding::big_endian:
-            read_body(BinaryScalars<true>(text), header, read.mesh);
+            read_body(BinaryScalars<true>(text), header, read);
             break;
     }
     read.reference = std::move(header.reference);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Side sides[] = {Side::split, Side::left_leg, Side::right_leg};
 
-std::size_t memory_of(const ResidentTile& tile) {
+std::size_t measured_bytes(const ResidentTile& tile) {
     return tile.tile->bytes() + (tile.support.size() + tile.below.size()) * sizeof(ResidentTile*);
 }
 
@@ -60,9 +60,10 @@ ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile, std::span<co
     resident.below.assign(tile->child_bound.size(), nullptr);
     resident.tile = std::move(tile);
     resident.fresh = true;
+    marked_.push_back(resident.root);
     tie(resident, support);
     ++size_;
-    bytes_ += memory_of(resident);
+    bytes_ += resident.bytes = measured_bytes(resident);
     unsettle(resident, 0);
     changes_.push_back(resident.root);
     return resident;
@@ -120,9 +121,10 @@ void ResidentSet::erase(LocationCode root) {
         if (std::exchange(tile.unsettled[static_cast<std::size_t>(level)], false))
             std::erase(unsettled_[static_cast<std::size_t>(root.bisection_level() + level)], &tile);
     --size_;
-    bytes_ -= memory_of(tile);
+    bytes_ -= std::exchange(tile.bytes, 0);
     untie(tile);
     tile.tile.reset();
+    tile.changed.reset();
     tile.below = {};
     free_if_unused(tile);
     changes_.push_back(root);
@@ -155,7 +157,7 @@ void ResidentSet::settle_level(ResidentTile& tile, int level) {
         const bool open = placed.is_open(i >> 1) && placed.is_open(beyond >> 1);
         if (open == placed.is_open(i)) continue;
         set_open(tile, i, open);
-        if (!tile.fresh) changes_.push_back(cell_code(placed.root, beyond));
+        change(tile, beyond);
         if (level == placed.depth - 1) unsettle_below(tile, beyond);
     }
     for (const SideCell& s : side_cells(level + 1))
@@ -179,12 +181,25 @@ void ResidentSet::settle_side(ResidentTile& tile, unsigned local, ResidentTile* 
 
 void ResidentSet::set_open(ResidentTile& tile, unsigned local, bool open) {
     tile.tile->set_open(local, open);
-    if (!tile.fresh) changes_.push_back(cell_code(tile.root, local));
+    change(tile, local);
     const int below = relative_level(local) + 1;
     if (below < tile.tile->depth)
         unsettle(tile, below);
     else
         unsettle_below(tile, local);
+}
+
+// Levels change from the coarsest down, and below a cell that has changed usually all do: they need no mention.
+void ResidentSet::change(ResidentTile& tile, unsigned local) {
+    if (tile.fresh) return;
+    if (!tile.changed) {
+        tile.changed = std::make_unique<std::bitset<1u << tile_levels>>();
+        marked_.push_back(tile.root);
+    }
+    for (unsigned i = local; i > 0; i >>= 1)
+        if (tile.changed->test(i)) return;
+    tile.changed->set(local);
+    changes_.push_back(cell_code(tile.root, local));
 }
 
 void ResidentSet::unsettle_below(ResidentTile& tile, unsigned local) {
@@ -196,16 +211,21 @@ void ResidentSet::unsettle_below(ResidentTile& tile, unsigned local) {
 }
 
 std::vector<LocationCode> ResidentSet::take_changes() {
-    const auto begin = [](LocationCode cell) { return cell.first_at(max_bisection_level); };
-    std::sort(changes_.begin(), changes_.end(), [&](LocationCode a, LocationCode b) {
-        return begin(a) != begin(b) ? begin(a) < begin(b) : a.bisection_level() < b.bisection_level();
-    });
+    // Thousands a frame where tiles come and go: sorted by keys made once. Of cells that begin at the same place the
+    // coarser has the lesser code.
+    std::vector<std::pair<std::uint64_t, LocationCode>> sorted;
+    sorted.reserve(changes_.size());
+    for (const LocationCode cell : changes_) sorted.emplace_back(cell.first_at(max_bisection_level), cell);
+    std::sort(sorted.begin(), sorted.end());
     std::vector<LocationCode> outermost;
-    for (const LocationCode cell : changes_) {
+    for (const auto& [begin, cell] : sorted)
         if (outermost.empty() || !outermost.back().contains(cell)) outermost.push_back(cell);
-        if (ResidentTile* const tile = layers_.begin_at(cell.bisection_level()) ? find(cell) : nullptr)
+    for (const LocationCode root : marked_)
+        if (ResidentTile* const tile = find(root)) {
             tile->fresh = false;
-    }
+            tile->changed.reset();
+        }
+    marked_.clear();
     changes_.clear();
     return outermost;
 }
@@ -218,7 +238,7 @@ void ResidentSet::place(const Placement& placement, unsigned threads) {
     });
     bytes_ = 0;
     for (ResidentTile* const t : tiles) {
-        bytes_ += memory_of(*t);
+        bytes_ += t->bytes = measured_bytes(*t);
         if (t->above)
             t->above->tile->set_child(layers_.position(t->root), t->tile.get());
         else

@@ -9,6 +9,7 @@
 // far as something changes. The fixpoint is unique: the order in which tiles came does not matter.
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -23,6 +24,7 @@ namespace planet {
 struct ResidentTile {
     LocationCode root;
     std::unique_ptr<PlacedTile> tile;                              ///< nullptr: not there
+    std::size_t bytes = 0;                                         ///< of the tile and what ties it; 0: not there
     std::vector<ResidentTile*> support;                            ///< see tile_support(), there or not
     ResidentTile* above = nullptr;                                 ///< the one that holds the cell of the root
     std::array<ResidentTile*, 3> beside{};                         ///< of the same level, by Side of the root
@@ -31,6 +33,7 @@ struct ResidentTile {
     std::size_t supported = 0;                                     ///< how many tiles have it in their support
     std::array<bool, tile_levels> unsettled{};                     ///< relative levels to be looked at again
     bool fresh = true;                                             ///< came since changes were last taken
+    std::unique_ptr<std::bitset<1u << tile_levels>> changed;       ///< of its cells, since then; nullptr: none
     std::uint64_t needed = 0, wanted = 0, followed = 0, held = 0;  ///< stamps of ViewNeeds
 };
 
@@ -73,6 +76,7 @@ class ResidentSet final : public TileSource {
     void settle_side(ResidentTile& tile, unsigned local, ResidentTile* beside);
     void set_open(ResidentTile& tile, unsigned local, bool open);
     void unsettle_below(ResidentTile& tile, unsigned local);
+    void change(ResidentTile& tile, unsigned local);
 
     bool may_open(const ResidentTile& tile, unsigned local) const;
 
@@ -80,6 +84,7 @@ class ResidentSet final : public TileSource {
     std::unordered_map<std::uint64_t, ResidentTile> tiles_;
     std::array<std::vector<ResidentTile*>, max_bisection_level> unsettled_;  // by bisection level
     std::vector<LocationCode> changes_;
+    std::vector<LocationCode> marked_;  // fresh tiles, and those with cells that have changed
     std::size_t size_ = 0, bytes_ = 0;
 };
 

@@ -71,8 +71,8 @@ LoadedTile ResidentTiles::load(LocationCode root) const {
     return loaded;
 }
 
-void ResidentTiles::take_in() {
-    for (LoadedTile& loaded : loader_.take()) take_in(std::move(loaded));
+void ResidentTiles::take_in(std::size_t most) {
+    for (LoadedTile& loaded : loader_.take(most)) take_in(std::move(loaded));
 }
 
 void ResidentTiles::take_in(LoadedTile loaded) {
@@ -93,8 +93,9 @@ bool ResidentTiles::up_to_date(const SegmentView& view, const SegmentView* ahead
     return !ahead || needs_the_same(*ahead, *ahead_);
 }
 
-std::span<const LocationCode> ResidentTiles::update(const SegmentView& view, const SegmentView* ahead) {
-    take_in();
+std::span<const LocationCode> ResidentTiles::update(const SegmentView& view, const SegmentView* ahead,
+                                                    std::size_t most) {
+    take_in(most);
     if (!up_to_date(view, ahead)) {
         view_ = view;
         ahead_ = ahead ? std::optional(*ahead) : std::nullopt;
@@ -126,17 +127,21 @@ void ResidentTiles::ask(const SegmentView& view, const SegmentView* ahead) {
             ++residency_.damaged;
             residency_.hidden_deviation_m = residency_.hidden_ratio = infinity;
         }
-    if (ahead) ask_ahead(*ahead, requests);
+    if (ahead) {
+        std::size_t bytes = 0;
+        for (const ResidentTile* t : needs.there()) bytes += t->bytes;
+        ask_ahead(*ahead, bytes, requests);
+    }
     loader_.request(std::move(requests));
 }
 
-// Within the limit, and after all that is needed now.
-void ResidentTiles::ask_ahead(const SegmentView& ahead, std::vector<TileRequest>& requests) {
+// Within the limit, of which tiles that are needed now take `bytes`, and after all that is needed now.
+void ResidentTiles::ask_ahead(const SegmentView& ahead, std::size_t bytes, std::vector<TileRequest>& requests) {
     ViewNeeds needs(set_, &ResidentTile::wanted, wanted_mark_ = ++mark_);
     needs.add(ahead);
-    std::size_t bytes = requests.size() * typical_tile_bytes;
-    for (const ResidentTile* t : set_.all())
-        if (is_held(*t)) bytes += t->tile->bytes();
+    bytes += requests.size() * typical_tile_bytes;
+    for (const ResidentTile* t : needs.there())
+        if (t->needed != needed_mark_) bytes += t->bytes;
     std::vector<MissingTile> missing = needs.missing();
     std::sort(missing.begin(), missing.end(), [](const MissingTile& a, const MissingTile& b) {
         return a.ratio > b.ratio || (a.ratio == b.ratio && a.root < b.root);
@@ -161,12 +166,14 @@ void ResidentTiles::keep_within_limit() {
     for (ResidentTile* t : set_.all())
         if (t->root.bisection_level() > 0 && !is_held(*t)) free.push_back(t);
     // A tile is needed whenever one below it is: of equals, the deeper goes first.
-    std::sort(free.begin(), free.end(), [&](const ResidentTile* a, const ResidentTile* b) {
-        return last(a) != last(b) ? last(a) < last(b) : b->root < a->root;
-    });
-    for (const ResidentTile* t : free) {
-        if (set_.bytes() <= limit) break;
-        if (t->children == 0) set_.erase(t->root);
+    const auto later = [&](const ResidentTile* a, const ResidentTile* b) {
+        return last(a) != last(b) ? last(a) > last(b) : a->root < b->root;
+    };
+    std::make_heap(free.begin(), free.end(), later);  // few of many go
+    while (set_.bytes() > limit && !free.empty()) {
+        std::pop_heap(free.begin(), free.end(), later);
+        if (free.back()->children == 0) set_.erase(free.back()->root);
+        free.pop_back();
     }
 }
 

@@ -9,6 +9,7 @@
 // A tile that cannot be read never comes: the cells of the tile above stand in for it, as they do for one that has not
 // come yet.
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -59,9 +60,10 @@ class ResidentTiles final : public TileSource {
 
     /// Takes in what has come, drops what was not needed for longest if memory is short, and asks for what the view
     /// needs. Does not wait. @param ahead a view that may come next: its tiles are asked for after those of `view`, as
-    /// far as memory allows
+    /// far as memory allows @param most takes in so many tiles, which bounds the time it takes; the rest is for the next
     /// @return cells in which the mesh may differ now (for Segments::invalidate), until the next call
-    std::span<const LocationCode> update(const SegmentView& view, const SegmentView* ahead = nullptr);
+    std::span<const LocationCode> update(const SegmentView& view, const SegmentView* ahead = nullptr,
+                                         std::size_t most = unlimited);
 
     /// The same, until nothing is pending. What the view needs stays even if it is more than the limit.
     std::span<const LocationCode> settle(const SegmentView& view);
@@ -78,12 +80,14 @@ class ResidentTiles final : public TileSource {
     ResidentCounts counts() const;
 
   private:
+    static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+
     LoadedTile load(LocationCode root) const;
-    void take_in();
+    void take_in(std::size_t most = unlimited);
     void take_in(LoadedTile loaded);
     bool up_to_date(const SegmentView& view, const SegmentView* ahead) const;
     void ask(const SegmentView& view, const SegmentView* ahead);
-    void ask_ahead(const SegmentView& ahead, std::vector<TileRequest>& requests);
+    void ask_ahead(const SegmentView& ahead, std::size_t bytes, std::vector<TileRequest>& requests);
     bool is_held(const ResidentTile& tile) const;
     void keep_within_limit();
     void count_memory();

@@ -1,6 +1,7 @@
 #include "planet/streaming/tile_loader.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace planet {
@@ -35,11 +36,14 @@ void TileLoader::request(std::vector<TileRequest> wanted) {
     loaded_or_idle_.notify_all();
 }
 
-std::vector<LoadedTile> TileLoader::take() {
+std::vector<LoadedTile> TileLoader::take(std::size_t most) {
     const std::lock_guard lock(mutex_);
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-    for (const LoadedTile& tile : loaded_) begun_.erase(tile.root.bits());
-    return std::exchange(loaded_, {});
+    const auto end = loaded_.begin() + static_cast<std::ptrdiff_t>(std::min(most, loaded_.size()));
+    std::vector<LoadedTile> taken(std::move_iterator(loaded_.begin()), std::move_iterator(end));
+    loaded_.erase(loaded_.begin(), end);
+    for (const LoadedTile& tile : taken) begun_.erase(tile.root.bits());
+    return taken;
 }
 
 void TileLoader::wait(std::size_t tiles) {

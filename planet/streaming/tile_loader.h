@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -43,8 +44,8 @@ class TileLoader {
     /// What is wanted from now on, in place of what was: requests that are not repeated and not begun are withdrawn.
     /// What is being loaded or waits to be taken is not loaded again.
     void request(std::vector<TileRequest> wanted);
-    /// What has been loaded since the last time.
-    std::vector<LoadedTile> take();
+    /// What has been loaded and not taken yet, the first loaded first. @param most so many tiles
+    std::vector<LoadedTile> take(std::size_t most = std::numeric_limits<std::size_t>::max());
     /// Returns once take() has this many to give or throws, or nothing more is on its way.
     void wait(std::size_t tiles = 1);
     /// How many tiles are requested, being loaded, or loaded and not taken.

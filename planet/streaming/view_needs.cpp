@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "planet/octahedron/cell_metrics.h"
 #include "planet/store/tile_sides.h"
@@ -55,7 +56,7 @@ void ViewNeeds::visit_below(ResidentTile& tile, unsigned position, bool in_segme
 void ViewNeeds::follow(ResidentTile& tile) {
     if (tile.followed == mark_) return;
     tile.followed = mark_;
-    tile.*stamp_ = mark_;
+    stamp(tile);
     for (ResidentTile* const support : tile.support) hold(*support);
     if (tile.above) follow(*tile.above);
 }
@@ -73,7 +74,11 @@ void ViewNeeds::hold(ResidentTile& tile) {
         follow(*above);
         if (!tile.tile) return miss(tile.root, bound);
     }
-    tile.*stamp_ = mark_;
+    stamp(tile);
+}
+
+void ViewNeeds::stamp(ResidentTile& tile) {
+    if (std::exchange(tile.*stamp_, mark_) != mark_) there_.push_back(&tile);
 }
 
 // A tile that is not there.

@@ -32,6 +32,8 @@ class ViewNeeds {
 
     /// Each once, in no particular order. Below these, more may be.
     const std::vector<MissingTile>& missing() const { return missing_; }
+    /// Those that are there, each once, in no particular order.
+    const std::vector<ResidentTile*>& there() const { return there_; }
 
   private:
     void visit(ResidentTile& tile, unsigned i, bool in_segment);
@@ -39,6 +41,7 @@ class ViewNeeds {
     void follow(ResidentTile& tile);
     void hold(ResidentTile& tile);
     void hold(LocationCode root);
+    void stamp(ResidentTile& tile);
     void miss(LocationCode root, const SplitRecord& bound);
     bool hidden(const SplitRecord& record) const;
     bool ends_patch(const SplitRecord& record, int bisection_level) const;
@@ -48,6 +51,7 @@ class ViewNeeds {
     std::uint64_t mark_;
     const SegmentView* view_ = nullptr;
     std::vector<MissingTile> missing_;
+    std::vector<ResidentTile*> there_;
     std::unordered_set<std::uint64_t> known_missing_;
 };
 

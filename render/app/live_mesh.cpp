@@ -17,6 +17,9 @@ using planet::wgs84;
 /// A table takes a tenth of a second of processor time, and in less the air about a moving eye changes little.
 constexpr double least_air_interval_s = 0.2;
 
+/// Taken in while the eye moves: 0.05 ms each.
+constexpr std::size_t tiles_a_frame = 64;
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -68,7 +71,7 @@ bool LiveMesh::update(const Wanted& wanted) {
     }
     const planet::SegmentView ahead = planet::view_ahead(view_, wanted.velocity_m_s, 0.5);
     const bool moves = wanted.velocity_m_s != glm::dvec3(0);
-    const auto changes = tiles_.update(view_, moves ? &ahead : nullptr);
+    const auto changes = moves ? tiles_.update(view_, &ahead, tiles_a_frame) : tiles_.update(view_);
     segments_.invalidate(changes);
     segments_.update(tiles_, view_, threads);
     bool changed = segments_.built() > 0 || !changes.empty() || eye_moved;

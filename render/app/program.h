@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#define OCTAGLOBE_COMMANDS(command)                                                                      \
-    command(render) command(view) command(bake) command(mesh) command(tin) command(query) command(check) \
-        command(verify) command(info)
+#define OCTAGLOBE_COMMANDS(command)                                                                       \
+    command(render) command(view) command(bake) command(mesh) command(tin) command(refine) command(query) \
+        command(check) command(verify) command(info)
 
 namespace render {
 

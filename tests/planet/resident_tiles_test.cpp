@@ -155,8 +155,8 @@ TEST(ResidentTiles, TheMeshChangesOnlyWhereItIsSaid) {
     std::set<LocationCode> before = leaves();
     std::size_t changed_leaves = 0;
     for (int step = 0; step < 40; ++step) {
-        const auto changes =
-            step % 5 ? tiles.update(list[random() % list.size()]) : tiles.settle(list[random() % list.size()]);
+        const SegmentView& view = list[random() % list.size()];
+        const auto changes = step % 5 ? tiles.update(view, nullptr, step % 2 ? 8 : 1000) : tiles.settle(view);
         const std::set<LocationCode> after = leaves();
         std::vector<LocationCode> differ;
         std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),

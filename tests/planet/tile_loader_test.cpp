@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "patchy_store.h"
@@ -51,6 +52,24 @@ TEST(TileLoader, LoadsTheMostWantedFirst) {
     }
     std::erase(order, at(0));
     EXPECT_EQ(order, (std::vector{at(5), at(3), at(4), at(7)}));
+}
+
+TEST(TileLoader, GivesSoManyTilesAndKeepsTheRest) {
+    TileLoader loader([](LocationCode root) { return nothing(root); }, 1);
+    std::vector<TileRequest> wanted;
+    for (int face = 0; face < face_count; ++face) wanted.push_back({LocationCode::face_root(face), -1.0 * face});
+    loader.request(wanted);
+    loader.wait(face_count);
+    std::vector<LocationCode> taken;
+    for (const std::size_t most : {3u, 0u, 4u, 9u, 9u})
+        for (const LoadedTile& tile : loader.take(most)) taken.push_back(tile.root);
+    EXPECT_EQ(taken.size(), std::size_t{face_count});
+    EXPECT_EQ(std::set(taken.begin(), taken.end()).size(), taken.size());
+    EXPECT_EQ(loader.on_their_way(), 0u);
+    loader.request({{LocationCode::face_root(0), 0}, {LocationCode::face_root(1), 0}});
+    loader.wait(2);
+    EXPECT_EQ(loader.take(1).size(), 1u);
+    EXPECT_EQ(loader.on_their_way(), 1u);
 }
 
 TEST(TileLoader, WhatIsNoLongerWantedIsNotLoaded) {

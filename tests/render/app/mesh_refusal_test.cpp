@@ -1,12 +1,7 @@
 // What `octaglobe mesh` refuses: one line that says what, where and what would be accepted, the right exit status, and
 // nothing left behind.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <ostream>
-
-#include "tests/render/app/program_process.h"
+#include "tests/render/app/refusals.h"
 #include "tests/render/app/terrain_files.h"
 
 namespace render {
@@ -54,31 +49,12 @@ void write_inputs(const ScratchFolder& folder) {
     std::filesystem::create_directory(folder / "folder.ply");
 }
 
-struct Refusal {
-    const char* arguments;
-    int status;
-    const char* line;      ///< what the line begins with, after "octaglobe: "
-    const char* accepted;  ///< what it says would be accepted, or a part of that
-};
-void PrintTo(const Refusal& refusal, std::ostream* out) {
-    *out << refusal.arguments;
-}
-
 class MeshRefusals : public testing::TestWithParam<Refusal> {};
 
 TEST_P(MeshRefusals, OneLineAndNoFile) {
     const ScratchFolder folder;
     write_inputs(folder);
-    const auto before = folder.names();
-    const Outcome outcome = run(folder.path(), words("mesh " + std::string(GetParam().arguments)));
-    EXPECT_EQ(outcome.status, GetParam().status);
-    EXPECT_TRUE(outcome.err.starts_with("octaglobe: " + std::string(GetParam().line))) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    const auto accepted = outcome.err.find("; accepted: ");
-    ASSERT_NE(accepted, std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find(GetParam().accepted, accepted), std::string::npos) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(folder.names(), before);
+    expect_one_line_and_no_file(folder, "mesh", GetParam());
 }
 
 constexpr Refusal rasters[] = {

@@ -1,0 +1,35 @@
+#pragma once
+// Polygons that say which triangles of a mesh are refined.
+
+#include <string>
+#include <vector>
+
+#include "planet/bisection/bisection.h"
+#include "planet/elevation/features.h"
+#include "render/app/refine_base.h"
+
+namespace render {
+
+class RefineRegion {
+  public:
+    /// Reads the polygons in the mesh's CRS; of a local or Earth-centred mesh in longitude and latitude; of one without a CRS
+    /// in the coordinates that both files have. Throws planet::Error(bad_data) for a file without polygons.
+    RefineRegion(const std::string& path, const RefineMeaning& meaning);
+
+    /// Whether a triangle and a polygon have a point in common. Sides are straight in the polygons' coordinates.
+    bool meets(const planet::TrianglePlaces& triangle) const;
+
+  private:
+    struct Area {
+        std::vector<std::vector<glm::dvec2>> rings;  ///< closed
+        glm::dvec2 low, high;
+    };
+    glm::dvec2 in_plan(const glm::dvec3& p) const;
+
+    RefineMeaning meaning_;
+    bool geodetic_ = false;  ///< places are turned into longitude and latitude
+    bool turns_ = false;     ///< x is a longitude
+    std::vector<Area> areas_;
+};
+
+}  // namespace render
