@@ -116,8 +116,9 @@ std::vector<glm::dvec2> DrapeMap::at(const std::vector<glm::ivec2>& samples, glm
     const planet::SampleGrid& grid = picture_->grid;
     const glm::dmat2 pixel_from_crs = glm::inverse(glm::dmat2(grid.per_column, grid.per_row));
     const double middle = grid.crs_from_sample(0.5 * size).x;
+    const bool in_degrees = picture_->plain ? raster_.geographic() : picture_->geographic();
     for (glm::dvec2& p : places) {
-        if (picture_->geographic()) p.x += 360 * std::round((middle - p.x) / 360);
+        if (in_degrees) p.x += 360 * std::round((middle - p.x) / 360);
         const glm::dvec2 pixel = pixel_from_crs * (p - grid.origin) + 0.5;
         if (!(glm::all(glm::greaterThan(pixel, glm::dvec2(-0.5))) && glm::all(glm::lessThan(pixel, size + 0.5))))
             throw planet::Error(planet::Fault::bad_data, name_, "does not cover all of " + raster_.name,

@@ -6,6 +6,7 @@
 
 #include "planet/elevation/raster_writer.h"
 #include "planet/error.h"
+#include "planet/patches/patch_mesh.h"
 #include "planet/tin/make_tin.h"
 #include "render/app/figures.h"
 #include "render/app/mesh_output.h"
@@ -44,13 +45,11 @@ class TinMaker {
     void run() {
         read_features();
         WrittenTin tin = certified(make());
+        tin.surface.strip.reserve(2 * tin.surface.triangles.size());
+        planet::append_strips(tin.surface.triangles, tin.surface.strip);  // only to be counted
         fill_report(tin);
         draw_steps();
-        heights_.reset();  // memory for writing and reading again
-        tin.surface.strip = {};
-        tin.deviation.by_triangle = {};
-        tin.deviation.farthest = {};
-        ::malloc_trim(0);
+        heights_.reset();
         write(tin);
         tell(tin);
     }
@@ -159,14 +158,17 @@ class TinMaker {
         return looks;
     }
 
-    void write(const WrittenTin& tin) {
+    void write(WrittenTin& tin) {
         const auto step = report_.step("write");
         progress_.update("writing", std::nan(""));
         if (error_grid_)
             error_grid_->write({0, 0, source_.raster()->width, source_.raster()->height}, tin.deviation.by_sample);
         if (file_) {
+            const planet::MeshLooks shown = looks(tin);
+            tin.keep_surface_only();  // leaves room to read the file again
+            ::malloc_trim(0);
             report_.set("output", command_.output->string());
-            report_.set("output_bytes", write_checked(*file_, tin, frame_.reference(), format_, looks(tin)));
+            report_.set("output_bytes", write_checked(*file_, tin, frame_.reference(), format_, shown));
         }
         if (error_grid_) error_grid_->finish();
         if (command_.error_grid) report_.set("error_grid", command_.error_grid->string());

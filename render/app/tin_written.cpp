@@ -32,8 +32,6 @@ void close_below(planet::SurfaceMesh& surface, const planet::TinSolid& solid, co
         surface.triangles.push_back(t);
     }
     surface.level.resize(surface.triangles.size(), 0);
-    surface.strip.clear();
-    planet::append_strips(surface.triangles, surface.strip);
 }
 
 class Certifier {
@@ -112,9 +110,12 @@ class Certifier {
     /// @return false, and the last state is measured, if that takes more triangles than there may be
     bool mend(WrittenTin& tin, std::vector<glm::ivec2> samples) const {
         std::vector<std::uint64_t> done = within(tin.mesh, tin.deviation.by_triangle);
+        tin.deviation = {};
         while (!samples.empty()) {
+            tin.surface = {};
             planet::TinMesh mended = planet::with_samples(tin.mesh, grid_, samples, goal_.features);
             if (mended.triangles.size() > goal_.max_triangles) {
+                place(tin);
                 measure_all(tin);
                 return false;
             }
@@ -173,6 +174,13 @@ void compare(const std::string& path, planet::MeshFormat format, const planet::S
 
 }  // namespace
 
+void WrittenTin::keep_surface_only() {
+    mesh = {};
+    deviation.by_sample = std::vector<float>();  // = {} would keep the room
+    surface.strip = std::vector<std::uint32_t>();
+    surface.level = std::vector<std::uint8_t>();
+}
+
 TinFloor floor_below(const HeightGrid& grid, const RasterFrame& frame, double base) {
     TinFloor floor{height_range(grid).x - base, {}};
     if (frame.reference().frame == planet::MeshFrame::enu && curves(frame))
@@ -181,7 +189,10 @@ TinFloor floor_below(const HeightGrid& grid, const RasterFrame& frame, double ba
 }
 
 WrittenTin as_written(planet::TinMesh mesh, const HeightGrid& grid, const RasterFrame& frame, const TinGoal& goal) {
-    return Certifier(grid, frame, goal).run(std::move(mesh));
+    WrittenTin tin = Certifier(grid, frame, goal).run(std::move(mesh));
+    tin.deviation.by_triangle = std::vector<double>();
+    tin.deviation.farthest = std::vector<glm::ivec2>();
+    return tin;
 }
 
 long check_closed(const planet::SurfaceMesh& solid, planet::MeshFrame frame) {
