@@ -431,7 +431,8 @@ TEST_F(TinCommandTest, WorldFilesPlaceADrape) {
     }
 }
 
-// Five bytes a sample and eighty a triangle, besides what the program and its libraries take for next to nothing.
+// Five bytes a sample and eighty a triangle, besides what the program and its libraries take for next to nothing, and the
+// tiles that are being made.
 TEST_F(TinCommandTest, MemoryIsForSamplesAndTriangles) {
     Terrain terrain = hilly_terrain();
     terrain.step_x = 1e-4, terrain.step_y = -1e-4;
@@ -441,7 +442,7 @@ TEST_F(TinCommandTest, MemoryIsForSamplesAndTriangles) {
     for (const std::string how : {" --max-deviation 20 -o t.ply", " --max-deviation 100 -o t.ply"}) {
         const double empty = number(tin("small.vrt" + how), "peak_memory_bytes");
         const Json report = tin("large.vrt" + how);
-        EXPECT_LE(number(report, "peak_memory_bytes") - empty, 5 * 4e6 + 80 * number(report, "triangles"))
+        EXPECT_LE(number(report, "peak_memory_bytes") - empty, 5 * 4e6 + 80 * number(report, "triangles") + 8e6)
             << empty << how << report.at("triangles");
     }
 }
