@@ -99,17 +99,22 @@ void DrapeMap::to_picture_crs(std::vector<glm::dvec2>& places) const {
     if (picture_->transform) picture_->transform->crs_from_geodetic(places);
 }
 
-std::vector<glm::dvec2> DrapeMap::at(const std::vector<glm::ivec2>& samples, glm::ivec2 first) const {
+std::vector<glm::dvec2> DrapeMap::edge_to_edge(const std::vector<glm::ivec2>& samples, glm::ivec2 first) const {
+    const bool columns_run_west = raster_.grid.per_column.x < 0;
+    const bool rows_run_north = raster_.grid.per_row.y > 0;
     std::vector<glm::dvec2> places;
     places.reserve(samples.size());
-    if (!picture_) {
-        const bool columns_run_west = raster_.grid.per_column.x<0, rows_run_north = raster_.grid.per_row.y> 0;
-        for (const glm::ivec2 p : samples) {
-            const glm::dvec2 share = (glm::dvec2(p + first) + 0.5) / glm::dvec2(raster_.width, raster_.height);
-            places.emplace_back(columns_run_west ? 1 - share.x : share.x, rows_run_north ? 1 - share.y : share.y);
-        }
-        return places;
+    for (const glm::ivec2 p : samples) {
+        const glm::dvec2 share = (glm::dvec2(p + first) + 0.5) / glm::dvec2(raster_.width, raster_.height);
+        places.emplace_back(columns_run_west ? 1 - share.x : share.x, rows_run_north ? 1 - share.y : share.y);
     }
+    return places;
+}
+
+std::vector<glm::dvec2> DrapeMap::at(const std::vector<glm::ivec2>& samples, glm::ivec2 first) const {
+    if (!picture_) return edge_to_edge(samples, first);
+    std::vector<glm::dvec2> places;
+    places.reserve(samples.size());
     for (const glm::ivec2 p : samples) places.push_back(raster_.grid.crs_from_sample(glm::dvec2(p + first)));
     to_picture_crs(places);
     const glm::dvec2 size(picture_->width, picture_->height);

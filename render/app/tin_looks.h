@@ -36,6 +36,7 @@ class DrapeMap {
     std::vector<glm::dvec2> at(const std::vector<glm::ivec2>& samples, glm::ivec2 first) const;
 
   private:
+    std::vector<glm::dvec2> edge_to_edge(const std::vector<glm::ivec2>& samples, glm::ivec2 first) const;
     void to_picture_crs(std::vector<glm::dvec2>& places) const;
 
     const planet::Raster& raster_;
