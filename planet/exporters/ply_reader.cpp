@@ -152,6 +152,7 @@ bool holds_corners(const PlyProperty& p) {
 
 template <class Scalars>
 void read_faces(Scalars& in, const PlyElement& element, SurfaceMesh& mesh) {
+    mesh.triangles.reserve(mesh.triangles.size() + element.count);  // as many as there is room for in the file
     for (std::uint64_t i = 0; i < element.count; ++i)
         for (const PlyProperty& p : element.properties) {
             if (!holds_corners(p)) {

@@ -87,9 +87,8 @@ void make_as_one(const HeightGrid& grid, const TinOptions& options, TinResult& r
 }
 
 // A tile has two triangles at least, however large the tolerance.
-bool is_mostly_borders(const TinMesh& mesh, const HeightGrid& grid) {
+bool is_mostly_borders(const TinMesh& mesh, const TinTiling& tiling) {
     constexpr std::size_t few = 10;  // triangles a tile: about there tiles and one mesh come to the same number
-    const TinTiling tiling(grid.width(), grid.height(), tiled_tin_step);
     return tiling.count() > 1 && mesh.triangles.size() < few * tiling.count();
 }
 
@@ -102,16 +101,30 @@ TinResult make_tin(const HeightGrid& grid, const TinOptions& options) {
     const bool in_tiles = options.max_triangles == std::numeric_limits<std::size_t>::max() &&
                           options.features.empty() && options.metric == TinMetric::local && !options.measure &&
                           options.stages.empty();
+    const auto make_whole = [&](TinResult& out) {
+        if (options.heights)
+            make_as_one(options.heights({0, 0}, {grid.width() - 1, grid.height() - 1}), options, out);
+        else
+            make_as_one(grid, options, out);
+    };
     if (!in_tiles) {
-        make_as_one(grid, options, result);
+        make_whole(result);
         return result;
     }
     Steps steps(result);
-    result.mesh = tiled_tin(grid, {options.tolerance, options.quality, options.threads});
+    const TiledTinOptions how{options.tolerance, options.quality, options.threads};
+    const TinTiling tiling(grid.width(), grid.height(), tiled_tin_step);
+    if (options.heights) {
+        std::vector<TinTile> tiles;
+        tin_tiles(tiling, options.heights, how, [&](TinTile&& tile) { tiles.push_back(std::move(tile)); });
+        result.mesh = joined(std::move(tiles));
+    } else {
+        result.mesh = tiled_tin(grid, how);
+    }
     steps.done("insertion");
-    if (is_mostly_borders(result.mesh, grid)) {
+    if (is_mostly_borders(result.mesh, tiling)) {
         TinResult whole;
-        make_as_one(grid, options, whole);
+        make_whole(whole);
         if (whole.mesh.triangles.size() < result.mesh.triangles.size()) return whole;
     }
     return result;

@@ -24,6 +24,9 @@ struct TinOptions {
     std::vector<std::size_t> stages = {};  ///< see GreedyOptions
     std::function<void(TinStage&&)> at_stage = {};
     unsigned threads = 0;  ///< 0: one a processor. The same bits whatever the number.
+    /// If given, heights to go by instead of the grid's, of which memory need not hold all at once (tin_tiles()). The
+    /// vertices get these, too.
+    WindowReader heights = {};
 };
 
 struct TinResult {

@@ -239,7 +239,6 @@ SurfaceMesh surface_from_tin(const TinMesh& mesh, const HeightGrid& grid, const 
     if (frame.mirrored())
         for (auto& t : out.triangles) std::swap(t[1], t[2]);
     out.level.assign(out.triangles.size(), 0);
-    append_strips(out.triangles, out.strip);
     return out;
 }
 
@@ -295,7 +294,7 @@ TinMesh with_samples(const TinMesh& mesh, const HeightGrid& grid, std::span<cons
                      const TinFeatures& features) {
     Delaunay all = coarsest_tin(grid);
     insert_features(all, grid, features);
-    all.reserve(mesh.triangles.size());
+    all.reserve(mesh.triangles.size() + 2 * samples.size());
     std::vector<glm::ivec2> points = mesh.vertices;
     points.insert(points.end(), samples.begin(), samples.end());
     std::sort(points.begin(), points.end(), before_in_quadrants);

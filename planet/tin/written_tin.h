@@ -13,7 +13,7 @@
 
 namespace planet {
 
-/// Vertices placed in the frame, triangles counter-clockwise seen from above, strips over them. Level is 0 throughout.
+/// Vertices placed in the frame, triangles counter-clockwise seen from above; no strips. Level is 0 throughout.
 /// @param grid whose heights the vertices get: not those the mesh was made with, if they were others
 SurfaceMesh surface_from_tin(const TinMesh& mesh, const HeightGrid& grid, const RasterFrame& frame);
 

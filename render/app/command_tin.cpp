@@ -112,7 +112,8 @@ void add_where_to(CLI::App& command, TinCommand& o) {
         ->needs(tile);
     add_value(command, "--error-grid", "FILE", "The deviation at every sample, as a GeoTIFF",
               [&](Where where, const std::string& text) { o.error_grid = file_name(where, text); });
-    add_value(command, "--drape", "FILE", "A picture that covers the raster edge to edge, put into a .glb",
+    add_value(command, "--drape", "FILE",
+              "A picture, put into a .glb: where its georeference says, else over the raster edge to edge",
               [&](Where where, const std::string& text) { o.drape = file_name(where, text); });
     add_value(command, "--picture", "FILE",
               "A picture of steps towards it, each over the deviations it set out from: .png, .jpg or .tif",

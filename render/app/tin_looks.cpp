@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
+#include "planet/elevation/georeference.h"
 #include "planet/elevation/image_io.h"
 #include "planet/error.h"
 
@@ -83,14 +85,52 @@ std::vector<glm::vec3> ground_normals(const planet::HeightGrid& grid, const plan
     return normals;
 }
 
-DrapeMap::DrapeMap(const planet::RasterHeader& raster)
-    : size_(raster.width, raster.height),
-      columns_run_west_(raster.grid.per_column.x < 0),
-      rows_run_north_(raster.grid.per_row.y > 0) {}
+DrapeMap::DrapeMap(const planet::Raster& raster, const std::string& picture) : raster_(raster), name_(picture) {
+    if (picture.empty()) return;
+    picture_ = planet::georeference_of(picture);
+    if (picture_ && raster.plain && !picture_->plain)
+        throw planet::Error(planet::Fault::bad_data, picture, "has a place on the planet, and " + raster.name + " none",
+                            "a picture without a georeference, which covers it from edge to edge");
+}
 
-glm::dvec2 DrapeMap::at(glm::dvec2 sample) const {
-    const glm::dvec2 share = (sample + 0.5) / size_;
-    return {columns_run_west_ ? 1 - share.x : share.x, rows_run_north_ ? 1 - share.y : share.y};
+void DrapeMap::to_picture_crs(std::vector<glm::dvec2>& places) const {
+    if (picture_->plain || picture_->crs == raster_.crs) return;
+    if (raster_.transform) raster_.transform->geodetic_from_crs(places);
+    if (picture_->transform) picture_->transform->crs_from_geodetic(places);
+}
+
+std::vector<glm::dvec2> DrapeMap::edge_to_edge(const std::vector<glm::ivec2>& samples, glm::ivec2 first) const {
+    const bool columns_run_west = raster_.grid.per_column.x < 0;
+    const bool rows_run_north = raster_.grid.per_row.y > 0;
+    std::vector<glm::dvec2> places;
+    places.reserve(samples.size());
+    for (const glm::ivec2 p : samples) {
+        const glm::dvec2 share = (glm::dvec2(p + first) + 0.5) / glm::dvec2(raster_.width, raster_.height);
+        places.emplace_back(columns_run_west ? 1 - share.x : share.x, rows_run_north ? 1 - share.y : share.y);
+    }
+    return places;
+}
+
+std::vector<glm::dvec2> DrapeMap::at(const std::vector<glm::ivec2>& samples, glm::ivec2 first) const {
+    if (!picture_) return edge_to_edge(samples, first);
+    std::vector<glm::dvec2> places;
+    places.reserve(samples.size());
+    for (const glm::ivec2 p : samples) places.push_back(raster_.grid.crs_from_sample(glm::dvec2(p + first)));
+    to_picture_crs(places);
+    const glm::dvec2 size(picture_->width, picture_->height);
+    const planet::SampleGrid& grid = picture_->grid;
+    const glm::dmat2 pixel_from_crs = glm::inverse(glm::dmat2(grid.per_column, grid.per_row));
+    const double middle = grid.crs_from_sample(0.5 * size).x;
+    const bool in_degrees = picture_->plain ? raster_.geographic() : picture_->geographic();
+    for (glm::dvec2& p : places) {
+        if (in_degrees) p.x += 360 * std::round((middle - p.x) / 360);
+        const glm::dvec2 pixel = pixel_from_crs * (p - grid.origin) + 0.5;
+        if (!(glm::all(glm::greaterThan(pixel, glm::dvec2(-0.5))) && glm::all(glm::lessThan(pixel, size + 0.5))))
+            throw planet::Error(planet::Fault::bad_data, name_, "does not cover all of " + raster_.name,
+                                "a picture that does, --mask with what it covers, or one without a georeference");
+        p = glm::clamp(pixel / size, 0.0, 1.0);
+    }
+    return places;
 }
 
 Drape::Drape(fs::path path) : path_(std::move(path)), image_(planet::read_image(path_.string())) {
@@ -105,7 +145,12 @@ std::string Drape::whole() const {
     return png_ || jpeg_ ? bytes_of_file(path_) : encoded(image_);
 }
 
-Drape::Part Drape::part(glm::dvec2 low, glm::dvec2 high) const {
+Drape::Part Drape::part(const std::vector<glm::dvec2>& places) const {
+    glm::dvec2 low(1), high(0);
+    for (const glm::dvec2 p : places) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
     const glm::dvec2 size(image_.width, image_.height);
     constexpr double beside = 2;  // pixels: what filters look at
     const glm::ivec2 first(glm::max(glm::floor(low * size) - beside, glm::dvec2(0))),
@@ -124,12 +169,10 @@ std::string Drape::encoded(const planet::Image& image) const {
     return bytes_of_file(file.path());
 }
 
-std::vector<glm::vec2> texture_coordinates(const std::vector<glm::ivec2>& samples, glm::ivec2 first,
-                                           const DrapeMap& map, const Drape::Part& part) {
+std::vector<glm::vec2> texture_coordinates(const std::vector<glm::dvec2>& places, const Drape::Part& part) {
     std::vector<glm::vec2> uv;
-    uv.reserve(samples.size());
-    for (const glm::ivec2 p : samples)
-        uv.emplace_back((map.at(glm::dvec2(p + first)) - part.low) / (part.high - part.low));
+    uv.reserve(places.size());
+    for (const glm::dvec2 p : places) uv.emplace_back((p - part.low) / (part.high - part.low));
     return uv;
 }
 

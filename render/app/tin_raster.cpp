@@ -6,6 +6,7 @@
 
 #include "planet/elevation/raster_writer.h"
 #include "planet/error.h"
+#include "planet/patches/patch_mesh.h"
 #include "planet/tin/make_tin.h"
 #include "render/app/figures.h"
 #include "render/app/mesh_output.h"
@@ -35,6 +36,7 @@ class TinMaker {
           source_(command),
           frame_(source_.frame(frame_kind(), format_)),
           error_grid_(open_error_grid()),
+          map_(*source_.raster(), command.drape ? command.drape->string() : ""),
           heights_(read()) {
         if (command.drape) drape_.emplace(*command.drape);
         if (command.picture) const OutputFile writable("--picture", *command.picture);
@@ -43,12 +45,11 @@ class TinMaker {
     void run() {
         read_features();
         WrittenTin tin = certified(make());
+        tin.surface.strip.reserve(2 * tin.surface.triangles.size());
+        planet::append_strips(tin.surface.triangles, tin.surface.strip);  // only to be counted
         fill_report(tin);
-        tin.surface.strip = {};  // memory for writing and reading again
-        tin.deviation.by_triangle = {};
-        tin.deviation.farthest = {};
         draw_steps();
-        ::malloc_trim(0);
+        heights_.reset();
         write(tin);
         tell(tin);
     }
@@ -84,22 +85,23 @@ class TinMaker {
 
     planet::TinResult make() {
         progress_.update("triangulating", std::nan(""));
-        if (!curves(frame_)) return make_over(heights_, 1);
-        const planet::RasterFrame tangent = source_.tangent_frame();
-        std::optional<HeightGrid> over_plane;
-        {
-            const auto step = report_.step("place");
-            over_plane.emplace(planet::heights_above_tangent_plane(heights_, tangent));
-        }
-        const double share = share_above_plane(tangent, {heights_.width(), heights_.height()});
-        return make_over(*over_plane, share * command_.exaggeration);
-    }
-
-    /// @param scale of the tolerance
-    planet::TinResult make_over(const HeightGrid& grid, double scale) {
         planet::TinOptions how;
         const double bound = command_.max_deviation.value_or(0);
-        how.tolerance = scale * std::max(0.5 * bound, bound - rounding());  // what that leaves is mended
+        how.tolerance = std::max(0.5 * bound, bound - rounding());  // what that leaves is mended
+        if (!curves(frame_)) return make(how, *heights_);
+        const planet::RasterFrame tangent = source_.tangent_frame();
+        how.tolerance *= command_.exaggeration * share_above_plane(tangent, {heights_->width(), heights_->height()});
+        const auto over_plane = [&](glm::ivec2 low, glm::ivec2 high) {
+            return planet::heights_above_tangent_plane(HeightGrid(*heights_, low, high), tangent.window(low), 1);
+        };
+        if (command_.measure.plain()) {  // in tiles: all at once would be as much memory again
+            how.heights = over_plane;
+            return make(how, *heights_);
+        }
+        return make(how, planet::heights_above_tangent_plane(*heights_, tangent));
+    }
+
+    planet::TinResult make(planet::TinOptions& how, const HeightGrid& grid) {
         if (command_.max_triangles) how.max_triangles = *command_.max_triangles;
         how.quality = command_.quality;
         how.features = features_;
@@ -116,11 +118,11 @@ class TinMaker {
 
     /// By how much the file's format may move the ground, in metres of height, where it rises by no more than 45 degrees.
     double rounding() const {
-        const glm::dvec2 range = height_range(heights_);
-        const PlacedBox box = box_of_window(frame_, {0, 0}, {heights_.width() - 1, heights_.height() - 1},
+        const glm::dvec2 range = height_range(*heights_);
+        const PlacedBox box = box_of_window(frame_, {0, 0}, {heights_->width() - 1, heights_->height() - 1},
                                             range.x - command_.base.value_or(0), range.y);
         const auto bound = planet::rounding_bound(box.low, box.high, frame_.reference(), format_);
-        return bound.z / command_.exaggeration + bound.xy + heights_.sample_rounding();
+        return bound.z / command_.exaggeration + bound.xy + heights_->sample_rounding();
     }
 
     WrittenTin certified(planet::TinResult made) {
@@ -135,9 +137,9 @@ class TinMaker {
         if (command_.max_triangles) goal.max_triangles = *command_.max_triangles;
         goal.format = format_;
         goal.by_sample = error_grid_ != nullptr;
-        if (command_.base) goal.floor = floor_below(heights_, frame_, *command_.base);
+        if (command_.base) goal.floor = floor_below(*heights_, frame_, *command_.base);
         goal.features = features_;
-        WrittenTin tin = as_written(std::move(made.mesh), heights_, frame_, goal);
+        WrittenTin tin = as_written(std::move(made.mesh), *heights_, frame_, goal);
         if (!tin.kept && !tin.mendable) refuse_bound(*command_.max_deviation, tin.deviation_max, format_);
         if (!tin.kept) end_ = planet::GreedyEnd::budget;  // what would mend it is more than there may be
         if (command_.base) {
@@ -151,18 +153,22 @@ class TinMaker {
         planet::MeshLooks looks;
         if (format_ != MeshFormat::glb || command_.base) return looks;  // without normals, viewers show facets
         looks.normals = normals_of(tin.surface);
-        looks.uv = texture_coordinates(tin.mesh.vertices, {0, 0}, DrapeMap(*source_.raster()));
+        looks.uv = texture_coordinates(map_.at(tin.mesh.vertices, {0, 0}));
         if (drape_) looks.picture = drape_->whole();
         return looks;
     }
 
-    void write(const WrittenTin& tin) {
+    void write(WrittenTin& tin) {
         const auto step = report_.step("write");
         progress_.update("writing", std::nan(""));
-        if (error_grid_) error_grid_->write({0, 0, heights_.width(), heights_.height()}, tin.deviation.by_sample);
+        if (error_grid_)
+            error_grid_->write({0, 0, source_.raster()->width, source_.raster()->height}, tin.deviation.by_sample);
         if (file_) {
+            const planet::MeshLooks shown = looks(tin);
+            tin.keep_surface_only();  // leaves room to read the file again
+            ::malloc_trim(0);
             report_.set("output", command_.output->string());
-            report_.set("output_bytes", write_checked(*file_, tin, frame_.reference(), format_, looks(tin)));
+            report_.set("output_bytes", write_checked(*file_, tin, frame_.reference(), format_, shown));
         }
         if (error_grid_) error_grid_->finish();
         if (command_.error_grid) report_.set("error_grid", command_.error_grid->string());
@@ -173,12 +179,12 @@ class TinMaker {
         if (!command_.picture) return;
         const auto step = report_.step("picture");
         progress_.update("drawing", std::nan(""));
-        const std::unique_ptr<planet::TinMeasure> measure = make_tin_measure(command_.measure, heights_);
+        const std::unique_ptr<planet::TinMeasure> measure = make_tin_measure(command_.measure, *heights_);
         planet::TinOptions how;
         how.features = features_;
         how.measure = measure.get();
         const planet::RasterFrame plan = source_.frame(MeshFrame::source, MeshFormat::ply);
-        write_tin_steps(heights_, metres_per_sample(plan), how, command_.stages, command_.picture->string());
+        write_tin_steps(*heights_, metres_per_sample(plan), how, command_.stages, command_.picture->string());
         report_.set("picture", command_.picture->string());
     }
 
@@ -191,7 +197,7 @@ class TinMaker {
         report_.set("angle_min_deg", tin.deviation.angle_min / planet::degrees);
         report_.set("samples", tin.deviation.samples);
         report_.set("samples_uncovered", tin.deviation.uncovered);
-        report_.set("samples_void", heights_.count() - heights_.valid_samples());
+        report_.set("samples_void", heights_->count() - heights_->valid_samples());
         report_.set("samples_mended", tin.inserted);
         report_.set("rounding_xy", tin.rounding.xy);
         report_.set("rounding_z_m", tin.rounding.z);
@@ -199,8 +205,8 @@ class TinMaker {
         if (command_.base) report_.set("base_m", *command_.base);
         if (!command_.features.empty()) report_features(features_found_, features_.outside, report_);
         report_.set("source", source_.raster()->name);
-        report_.set("columns", heights_.width());
-        report_.set("rows", heights_.height());
+        report_.set("columns", heights_->width());
+        report_.set("rows", heights_->height());
     }
 
     std::string stopped_by() const { return end_ == planet::GreedyEnd::budget ? "triangles" : "deviation"; }
@@ -221,7 +227,8 @@ class TinMaker {
     const TinSource source_;
     const planet::RasterFrame frame_;
     std::unique_ptr<planet::RasterWriter> error_grid_;
-    const HeightGrid heights_;
+    const DrapeMap map_;
+    std::optional<HeightGrid> heights_;  ///< until the mesh is certified
     std::optional<Drape> drape_;
     planet::TinFeatures features_;
     planet::FeatureReport features_found_;

@@ -85,6 +85,7 @@ planet::VerticalDatum TinSource::datum() const {
 
 planet::HeightGrid TinSource::heights() const {
     planet::HeightGrid grid = planet::heights_of(*mosaic_, most_samples);
+    planet::raster_driver().limit_cache(least_cache / 16);
     if (!mask_.empty()) planet::keep_within(grid, *raster_, mask_);
     return grid;
 }

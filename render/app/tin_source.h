@@ -23,7 +23,7 @@ class TinSource {
     const std::shared_ptr<const planet::Raster>& raster() const { return raster_; }
     planet::VerticalDatum datum() const;
 
-    /// All heights, masked. Throws planet::Error(bad_data) if there are none, or too many for the memory of one mesh.
+    /// All heights, masked; what was kept of the files is let go. Throws planet::Error(bad_data) if there are none, or too many for the memory of one mesh.
     planet::HeightGrid heights() const;
     /// A window of them. Safe from several threads. @param first, last sample, both included
     planet::HeightGrid heights(glm::ivec2 first, glm::ivec2 last) const;

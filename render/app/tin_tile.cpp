@@ -36,7 +36,7 @@ TileMaker::TileMaker(const TinCommand& command, const TinSource& source)
       source_(source),
       frame_(source.frame(command.frame.value_or(usual_frame(command.tile_format)), command.tile_format)),
       tiling_(make_tiling()),
-      map_(*source.raster()) {
+      map_(*source.raster(), command.drape ? command.drape->string() : "") {
     if (curves(frame_)) {
         tangent_.emplace(source.tangent_frame());
         scale_ = command.exaggeration * share_above_plane(*tangent_, {tiling_.width(), tiling_.height()});
@@ -147,12 +147,10 @@ planet::MeshLooks TileMaker::looks(const WrittenTin& tin, const TileWindow& w) c
     }
     const std::vector<glm::vec3> ground = ground_normals(w.window, frame_.window(w.first), samples);
     for (std::size_t i = 0; i < vertices.size(); ++i) looks.normals[vertices[i]] = ground[i];
+    const std::vector<glm::dvec2> places = map_.at(tin.mesh.vertices, w.low);
     Drape::Part part;
-    if (drape_) {
-        const glm::dvec2 a = map_.at(glm::dvec2(w.low)), b = map_.at(glm::dvec2(w.high));
-        part = drape_->part(glm::min(a, b), glm::max(a, b));
-    }
-    looks.uv = texture_coordinates(tin.mesh.vertices, w.low, map_, part);
+    if (drape_) part = drape_->part(places);
+    looks.uv = texture_coordinates(places, part);
     looks.picture = std::move(part.bytes);
     return looks;
 }

@@ -32,8 +32,6 @@ void close_below(planet::SurfaceMesh& surface, const planet::TinSolid& solid, co
         surface.triangles.push_back(t);
     }
     surface.level.resize(surface.triangles.size(), 0);
-    surface.strip.clear();
-    planet::append_strips(surface.triangles, surface.strip);
 }
 
 class Certifier {
@@ -52,18 +50,15 @@ class Certifier {
             tin.kept = found.too_far == 0;
             tin.mendable = tin.kept || !found.samples.empty() || !found.border.empty();
             tin.border_samples = std::move(found.border);
-            if (found.samples.empty()) return tin;
-            std::sort(found.within.begin(), found.within.end());
-            if (!mend(tin, std::move(found))) return tin;
+            if (found.samples.empty() || !mend(tin, std::move(found.samples))) return tin;
         }
     }
 
   private:
     struct Findings {
-        std::size_t too_far = 0;            ///< triangles
-        std::vector<glm::ivec2> samples;    ///< the worst of each; corners cannot be inserted again
-        std::vector<glm::ivec2> border;     ///< those on a shared border
-        std::vector<std::uint64_t> within;  ///< keys of triangles within the tolerance
+        std::size_t too_far = 0;          ///< triangles
+        std::vector<glm::ivec2> samples;  ///< the worst of each; corners cannot be inserted again
+        std::vector<glm::ivec2> border;   ///< those on a shared border
     };
 
     void measure_all(WrittenTin& tin) const {
@@ -75,16 +70,24 @@ class Certifier {
     Findings look(const planet::TinMesh& mesh, const planet::WrittenDeviation& deviation) const {
         Findings found;
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            if (!(deviation.by_triangle[i] + grid_.sample_rounding() > goal_.tolerance)) {
-                if (std::isfinite(goal_.tolerance)) found.within.push_back(key(mesh, i));
-                continue;
-            }
+            if (!is_too_far(deviation.by_triangle[i])) continue;
             ++found.too_far;
             const glm::ivec2 worst = deviation.farthest[i];
             if (std::ranges::any_of(mesh.triangles[i], [&](auto v) { return mesh.vertices[v] == worst; })) continue;
             (goal_.border_is_shared && on_border(worst) ? found.border : found.samples).push_back(worst);
         }
         return found;
+    }
+
+    bool is_too_far(double deviation) const { return deviation + grid_.sample_rounding() > goal_.tolerance; }
+
+    /// Keys of the triangles within the tolerance, ascending.
+    std::vector<std::uint64_t> within(const planet::TinMesh& mesh, const std::vector<double>& deviation) const {
+        std::vector<std::uint64_t> keys;
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+            if (!is_too_far(deviation[i])) keys.push_back(key(mesh, i));
+        std::sort(keys.begin(), keys.end());
+        return keys;
     }
 
     /// Of a triangle, by its corners. That two share one is as good as impossible, and would be noticed in the end.
@@ -105,29 +108,33 @@ class Certifier {
 
     /// Inserts the worst samples until no triangle that this makes is too far.
     /// @return false, and the last state is measured, if that takes more triangles than there may be
-    bool mend(WrittenTin& tin, Findings found) const {
-        while (!found.samples.empty()) {
-            planet::TinMesh mended = planet::with_samples(tin.mesh, grid_, found.samples, goal_.features);
+    bool mend(WrittenTin& tin, std::vector<glm::ivec2> samples) const {
+        std::vector<std::uint64_t> done = within(tin.mesh, tin.deviation.by_triangle);
+        tin.deviation = {};
+        while (!samples.empty()) {
+            tin.surface = {};
+            planet::TinMesh mended = planet::with_samples(tin.mesh, grid_, samples, goal_.features);
             if (mended.triangles.size() > goal_.max_triangles) {
+                place(tin);
                 measure_all(tin);
                 return false;
             }
-            tin.inserted += found.samples.size();
+            tin.inserted += samples.size();
             tin.mesh = std::move(mended);
             const double step = tin.rounding.step;
             place(tin);
-            if (tin.rounding.step != step) found.within.clear();  // everything has moved
+            if (tin.rounding.step != step) done.clear();  // everything has moved
             planet::TinMesh fresh{tin.mesh.vertices, {}, {}};
             for (std::size_t i = 0; i < tin.mesh.triangles.size(); ++i)
-                if (!std::binary_search(found.within.begin(), found.within.end(), key(tin.mesh, i)))
+                if (!std::binary_search(done.begin(), done.end(), key(tin.mesh, i)))
                     fresh.triangles.push_back(tin.mesh.triangles[i]);
-            Findings more =
-                look(fresh, planet::measure_written(fresh, tin.surface.vertices, grid_, frame_, goal_.threads));
-            const auto middle = static_cast<std::ptrdiff_t>(found.within.size());
-            found.within.insert(found.within.end(), more.within.begin(), more.within.end());
-            std::sort(found.within.begin() + middle, found.within.end());
-            std::inplace_merge(found.within.begin(), found.within.begin() + middle, found.within.end());
-            found.samples = std::move(more.samples);
+            const planet::WrittenDeviation deviation =
+                planet::measure_written(fresh, tin.surface.vertices, grid_, frame_, goal_.threads);
+            samples = look(fresh, deviation).samples;
+            const std::vector<std::uint64_t> now = within(fresh, deviation.by_triangle);
+            const auto middle = static_cast<std::ptrdiff_t>(done.size());
+            done.insert(done.end(), now.begin(), now.end());
+            std::inplace_merge(done.begin(), done.begin() + middle, done.end());
         }
         return true;
     }
@@ -167,6 +174,13 @@ void compare(const std::string& path, planet::MeshFormat format, const planet::S
 
 }  // namespace
 
+void WrittenTin::keep_surface_only() {
+    mesh = {};
+    deviation.by_sample = std::vector<float>();  // = {} would keep the room
+    surface.strip = std::vector<std::uint32_t>();
+    surface.level = std::vector<std::uint8_t>();
+}
+
 TinFloor floor_below(const HeightGrid& grid, const RasterFrame& frame, double base) {
     TinFloor floor{height_range(grid).x - base, {}};
     if (frame.reference().frame == planet::MeshFrame::enu && curves(frame))
@@ -175,7 +189,10 @@ TinFloor floor_below(const HeightGrid& grid, const RasterFrame& frame, double ba
 }
 
 WrittenTin as_written(planet::TinMesh mesh, const HeightGrid& grid, const RasterFrame& frame, const TinGoal& goal) {
-    return Certifier(grid, frame, goal).run(std::move(mesh));
+    WrittenTin tin = Certifier(grid, frame, goal).run(std::move(mesh));
+    tin.deviation.by_triangle = std::vector<double>();
+    tin.deviation.farthest = std::vector<glm::ivec2>();
+    return tin;
 }
 
 long check_closed(const planet::SurfaceMesh& solid, planet::MeshFrame frame) {

@@ -37,12 +37,15 @@ struct WrittenTin {
     planet::TinMesh mesh;         ///< in the lattice; of a solid its top
     planet::SurfaceMesh surface;  ///< in the frame, rounded. Its first vertices and triangles are those of the mesh
     planet::MeshRounding rounding;
-    planet::WrittenDeviation deviation;      ///< without the rounding of samples
+    planet::WrittenDeviation deviation;      ///< without the rounding of samples, and without lists by triangle
     double deviation_max = 0;                ///< m, with it
     bool kept = true;                        ///< the tolerance
     bool mendable = true;                    ///< if not: the format's rounding is too coarse for the tolerance
     std::size_t inserted = 0;                ///< samples, to mend
     std::vector<glm::ivec2> border_samples;  ///< too far, on a shared border
+
+    /// Frees the memory of all but the vertices and triangles of the surface; numbers stay.
+    void keep_surface_only();
 };
 
 /// @param mesh whose vertices are samples of the grid @param frame of the grid's window

@@ -6,6 +6,7 @@
 
 #include "planet/elevation/raster_io.h"
 #include "planet/mesh/surface_check.h"
+#include "planet/patches/patch_mesh.h"
 #include "planet/tin/make_tin.h"
 #include "tin_rasters.h"
 
@@ -37,7 +38,8 @@ TEST(TinWritten, IsASurfaceInEveryFrame) {
     const TinMesh mesh = make_tin(grid, {.tolerance = 20}).mesh;
     for (const MeshFrame kind : {MeshFrame::source, MeshFrame::utm, MeshFrame::enu, MeshFrame::ecef}) {
         const RasterFrame frame = frame_of(raster, kind);
-        const SurfaceMesh surface = surface_from_tin(mesh, grid, frame);
+        SurfaceMesh surface = surface_from_tin(mesh, grid, frame);
+        append_strips(surface.triangles, surface.strip);
         const SurfaceCheck c = check(surface, kind);
         EXPECT_TRUE(c.ok()) << c.summary();
         EXPECT_EQ(c.euler(), 1);
@@ -117,7 +119,8 @@ TEST(TinWritten, CurvedFramesAreMetByHeightsAboveThePlane) {
     EXPECT_GT(measure_written(flat_mesh, surface_from_tin(flat_mesh, grid, ecef).vertices, grid, ecef).max, 100);
     const TinMesh mesh = make_tin(heights_above_tangent_plane(grid, enu), {.tolerance = 3}).mesh;
     for (const RasterFrame* frame : {&enu, &ecef}) {
-        const SurfaceMesh surface = surface_from_tin(mesh, grid, *frame);
+        SurfaceMesh surface = surface_from_tin(mesh, grid, *frame);
+        append_strips(surface.triangles, surface.strip);
         const WrittenDeviation d = measure_written(mesh, surface.vertices, grid, *frame);
         EXPECT_LE(d.max, 3.1);
         EXPECT_EQ(d.samples, grid.count());

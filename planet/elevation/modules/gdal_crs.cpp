@@ -96,6 +96,14 @@ std::string vertical_of(const OGRSpatialReference* crs) {
     return "an unnamed vertical datum";
 }
 
+bool read_grid(GDALDataset& dataset, RasterHeader& raster) {
+    double g[6];
+    if (dataset.GetGeoTransform(g) != CE_None) return false;
+    raster.grid = {{g[0] + 0.5 * (g[1] + g[2]), g[3] + 0.5 * (g[4] + g[5])}, {g[1], g[4]}, {g[2], g[5]}};
+    const glm::dvec2 last = raster.grid.crs_from_sample({raster.width, raster.height});
+    return std::isfinite(last.x + last.y) && std::abs(raster.grid.determinant()) > 0;
+}
+
 void set_crs(RasterHeader& raster, OGRSpatialReference& crs, const std::string& path) {
     const GdalMessages messages;
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);

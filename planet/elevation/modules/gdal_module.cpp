@@ -74,15 +74,6 @@ bool fits_longitude_latitude(const RasterHeader& r) {
     return true;
 }
 
-// False if the file has none that is of use.
-bool read_grid(GDALDataset& dataset, RasterHeader& raster) {
-    double g[6];
-    if (dataset.GetGeoTransform(g) != CE_None) return false;
-    raster.grid = {{g[0] + 0.5 * (g[1] + g[2]), g[3] + 0.5 * (g[4] + g[5])}, {g[1], g[4]}, {g[2], g[5]}};
-    const glm::dvec2 last = raster.grid.crs_from_sample({raster.width, raster.height});
-    return std::isfinite(last.x + last.y) && std::abs(raster.grid.determinant()) > 0;
-}
-
 void read_georeference(GDALDataset& dataset, const RasterOptions& options, const std::string& path,
                        RasterHeader& raster) {
     if (!read_grid(dataset, raster)) {

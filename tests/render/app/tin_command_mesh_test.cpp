@@ -393,5 +393,57 @@ TEST_F(TinCommandTest, GlbIsLitAndDraped) {
     }
 }
 
+/// 200 x 100 pixels. @param beside a file that says where they lie, and what it says
+void write_placed_picture(const ScratchFolder& folder, const char* beside, const char* place) {
+    planet::write_image((folder / "photo.png").string(), {200, 100, 3, std::vector<std::uint8_t>(60'000, 90)});
+    std::ofstream(folder / beside) << place;
+}
+
+// A picture with a CRS of its own: the .glb is in that CRS, so places can be compared.
+TEST_F(TinCommandTest, DrapesLieWhereTheySay) {
+    hilly_terrain().write(folder_ / "dem.vrt");
+    constexpr double x = 560000, y = 5560000, width = 80000, height = 60000;  // wider than the terrain
+    write_placed_picture(folder_, "photo.png.aux.xml",
+                         "<PAMDataset><SRS>EPSG:32632</SRS><GeoTransform>560000,400,0,5560000,0,-600</GeoTransform>"
+                         "</PAMDataset>");
+    tin("dem.vrt --max-deviation 20 --frame utm -o t.glb --drape photo.png");
+    planet::MeshLooks looks;
+    const SurfaceMesh mesh = planet::read_mesh((folder_ / "t.glb").string(), nullptr, &looks);
+    ASSERT_EQ(looks.uv.size(), mesh.vertices.size());
+    for (std::size_t i = 0; i < looks.uv.size(); ++i) {
+        EXPECT_NEAR(static_cast<double>(looks.uv[i].x), (mesh.vertices[i].x - x) / width, 1e-5);
+        EXPECT_NEAR(static_cast<double>(looks.uv[i].y), (y - mesh.vertices[i].y) / height, 1e-5);
+    }
+}
+
+// Without a CRS a picture is in that of the raster.
+TEST_F(TinCommandTest, WorldFilesPlaceADrape) {
+    hilly_terrain().write(folder_ / "dem.vrt");
+    // A turn further east.
+    write_placed_picture(folder_, "photo.pgw", "0.005\n0\n0\n-0.005\n369.9025\n50.0975\n");
+    tin("dem.vrt --max-deviation 20 -o t.glb --drape photo.png");
+    planet::MeshLooks looks;
+    const SurfaceMesh mesh = planet::read_mesh((folder_ / "t.glb").string(), nullptr, &looks);
+    ASSERT_EQ(looks.uv.size(), mesh.vertices.size());
+    for (std::size_t i = 0; i < looks.uv.size(); ++i) {
+        EXPECT_NEAR(looks.uv[i].x, 10.2 - 9.9 + mesh.vertices[i].x / 71696, 0.004);
+        EXPECT_NEAR(looks.uv[i].y, 2 * (50.1 - 49.84 - mesh.vertices[i].y / 111230), 0.008);
+    }
+}
+
+// Five bytes a sample and eighty a triangle, besides what the program and its libraries take for next to nothing, and the
+// tiles that are being made.
+TEST_F(TinCommandTest, MemoryIsForSamplesAndTriangles) {
+    Terrain terrain = hilly_terrain();
+    terrain.step_x = 1e-4, terrain.step_y = -1e-4;
+    terrain.write(folder_ / "small.vrt");
+    terrain.width = terrain.height = 1200;
+    terrain.write(folder_ / "large.vrt");
+    const double empty = number(tin("small.vrt --max-deviation 20 -o t.ply"), "peak_memory_bytes");
+    const Json report = tin("large.vrt --max-deviation 20 -o t.ply");
+    EXPECT_LE(number(report, "peak_memory_bytes") - empty, 5 * 1.44e6 + 80 * number(report, "triangles") + 8e6)
+        << empty << " and " << report.at("triangles") << " triangles";
+}
+
 }  // namespace
 }  // namespace render

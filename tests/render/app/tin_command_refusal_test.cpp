@@ -32,6 +32,13 @@ void write_inputs(const ScratchFolder& folder) {
     std::ofstream(folder / "damaged.tif") << "II*";
     std::ofstream(folder / "picture.png", std::ios::binary)
         << planet::testing::png_bytes(9, 9, 8, [](int x, int y) { return static_cast<unsigned>(x * y); });
+    std::ofstream(folder / "part.png", std::ios::binary)
+        << planet::testing::png_bytes(9, 9, 8, [](int x, int y) { return static_cast<unsigned>(x * y); });
+    std::ofstream(folder / "part.pgw") << "0.04\n0\n0\n-0.04\n10.02\n49.98\n";
+    std::ofstream(folder / "placed.png", std::ios::binary)
+        << planet::testing::png_bytes(9, 9, 8, [](int x, int y) { return static_cast<unsigned>(x + y); });
+    std::ofstream(folder / "placed.png.aux.xml")
+        << "<PAMDataset><SRS>EPSG:4326</SRS><GeoTransform>9,1,0,51,0,-1</GeoTransform></PAMDataset>";
     write_features(folder / "in.geojson", R"({"type":"LineString","coordinates":[[10,50],[10.3,49.7]]})");
     write_features(folder / "out.geojson", R"({"type":"Point","coordinates":[20,20]})");
     write_features(folder / "far.geojson", R"({"type":"Polygon","coordinates":[[[20,20],[21,20],[21,21],[20,20]]]})");
@@ -115,6 +122,9 @@ constexpr Refusal outputs[] = {
     {"dem.vrt --max-deviation 9 -o t.ply --drape picture.png", 2, "--drape: only a .glb holds", ".glb"},
     {"dem.vrt --max-deviation 9 -o t.glb --drape in.geojson", 3, "in.geojson: ", "a picture"},
     {"dem.vrt --max-deviation 9 -o t.glb --drape picture.png --base 9", 2, "--drape: goes with no solid", "--base"},
+    {"dem.vrt --max-deviation 9 -o t.glb --drape part.png", 3, "part.png: does not cover all of dem.vrt", "--mask"},
+    {"dem.vrt --max-deviation 9 --tile 9 -o out --drape part.png", 3, "part.png: does not cover all of dem", "--mask"},
+    {"picture.png --max-deviation 9 -o t.glb --drape placed.png", 3, "placed.png: has a place on the planet", "edge"},
     {"dem.vrt --max-deviation 9 -o t.stl --frame source", 2, ".stl: frame source is not written", "frame enu"},
     {"dem.vrt --max-deviation 9 -o t.glb --frame source", 2, ".glb: its coordinates are lengths", "enu, utm or ecef"},
     {"dem.vrt --max-deviation 9 --tile 1 -o out", 2, "--tile: '1' is out of range", "2 to 16384"},
