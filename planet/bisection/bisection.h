@@ -37,9 +37,9 @@ enum class BisectionRule : std::uint8_t { modified, plain };
 /// Where sides are judged: x and y only, or all three coordinates.
 enum class SideGeometry : std::uint8_t { space, plan };
 
-/// Where a new vertex belongs, by the midpoint of the placed ends of the side that it splits: on the terrain, on a sphere.
-/// In plan, x and y must stay.
-using Placement = std::function<glm::dvec3(const glm::dvec3& midpoint)>;
+/// Where a new vertex belongs, by the placed ends of the side that it splits, in either order: on the terrain, on a sphere.
+/// In plan, x and y must be those of the midpoint.
+using Placement = std::function<glm::dvec3(const glm::dvec3& a, const glm::dvec3& b)>;
 
 /// Corners of a triangle as placed, in the orientation of the base mesh.
 using TrianglePlaces = std::array<glm::dvec3, 3>;

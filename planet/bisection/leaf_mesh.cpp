@@ -88,7 +88,7 @@ LeafMesh::Index LeafMesh::insert_vertex(Index a, Index b) {
     const auto v = static_cast<Index>(flat_.size());
     flat_.push_back((flat_[a] + flat_[b]) * 0.5);
     if (options_.place) {
-        const glm::dvec3 placed = options_.place((placed_[a] + placed_[b]) * 0.5), &middle = flat_.back();
+        const glm::dvec3 placed = options_.place(placed_[a], placed_[b]), &middle = flat_.back();
         placed_.push_back(options_.sides == SideGeometry::plan ? glm::dvec3(middle.x, middle.y, placed.z) : placed);
     }
     for (std::size_t i = 0; i < attribute_width_; ++i)

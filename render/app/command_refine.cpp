@@ -51,7 +51,7 @@ void add_what(CLI::App& command, RefineCommand& o) {
                   o.rule = static_cast<planet::BisectionRule>(parse_choice(where, text, {"modified", "plain"}));
               });
     add_value(command, "--sides", "GEOMETRY",
-              "Where sides are judged: space or plan [plan with --elevation, else space]",
+              "Where sides are judged: space or plan [plan with --elevation but for an Earth-centred mesh, else space]",
               [&](Where where, const std::string& text) {
                   o.sides = static_cast<planet::SideGeometry>(parse_choice(where, text, {"space", "plan"}));
               });
@@ -111,7 +111,7 @@ void add_stream(CLI::App& command, RefineCommand& o) {
                                 o.morph = static_cast<int>(parse_whole(where, text, 2, most_frames));
                             });
     add_value(
-        command, "--format", "FORMAT", "Of frames: glb, ply, obj or stl [glb; ply where x and y are degrees]",
+        command, "--format", "FORMAT", "Of frames: glb, ply, obj or stl [glb]",
         [&](Where where, const std::string& text) {
             o.frame_format = static_cast<planet::MeshFormat>(parse_choice(where, text, {"glb", "ply", "obj", "stl"}));
         })
@@ -121,6 +121,12 @@ void add_stream(CLI::App& command, RefineCommand& o) {
 void add_where_to(CLI::App& command, RefineCommand& o) {
     add_value(command, "-o,--output", "FILE", "The mesh: .glb, .ply, .obj or .stl; with --morph a new folder",
               [&](Where where, const std::string& text) { o.output = file_name(where, text); });
+    add_value(command, "--frame", "FRAME",
+              "source (as it is), utm, enu (metres east, north and up of the mesh's middle) or ecef\n"
+              "[that of the mesh; enu for degrees in a .glb and all in an .stl]",
+              [&](Where where, const std::string& text) {
+                  o.frame = static_cast<planet::MeshFrame>(parse_choice(where, text, {"source", "utm", "enu", "ecef"}));
+              });
     add_value(command, "--picture", "FILE", "The triangles in plan, bisection levels in colour: .png, .jpg or .tif",
               [&](Where where, const std::string& text) { o.picture = parse_picture_name(where, text); });
     add_value(command, "--size", "WxH", "Of the picture [1600 wide, as high as the mesh; a planet 1600x1600]",

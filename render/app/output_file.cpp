@@ -13,7 +13,8 @@
 namespace render {
 namespace fs = std::filesystem;
 
-OutputFile::OutputFile(std::string where, fs::path target) : where_(std::move(where)), target_(std::move(target)) {
+OutputFile::OutputFile(std::string where, fs::path target, fs::path known_as)
+    : where_(std::move(where)), target_(std::move(target)), known_as_(std::move(known_as)) {
     if (target_.empty()) throw planet::Error(planet::Fault::bad_usage, where_, "empty file name", "a path");
     std::error_code ignored;
     const fs::file_status status = fs::status(target_, ignored);
@@ -65,7 +66,8 @@ void OutputFile::commit(std::string_view bytes) {
 
 void OutputFile::fail(int error) const {
     throw planet::Error(planet::Fault::bad_usage, where_,
-                        shown(target_.native()) + " cannot be written: " + std::generic_category().message(error),
+                        shown((known_as_.empty() ? target_ : known_as_).native()) +
+                            " cannot be written: " + std::generic_category().message(error),
                         "a file in a folder that exists and can be written");
 }
 

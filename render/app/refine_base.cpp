@@ -9,6 +9,7 @@
 #include "planet/exporters/reference_text.h"
 #include "planet/exporters/text_words.h"
 #include "planet/frames.h"
+#include "render/app/refine_frame.h"
 
 namespace render {
 namespace {
@@ -21,24 +22,13 @@ std::size_t width_of(const RefineMeaning& m) {
     return m.normals * normal_width + m.uv * uv_width + m.colors * color_width;
 }
 
-/// Near the middle of a mesh in degrees.
-glm::dvec2 metres_per_degree(const std::vector<glm::dvec3>& vertices) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const glm::dvec3& v : vertices) {
-        low = std::min(low, v.y);
-        high = std::max(high, v.y);
-    }
-    const double latitude = std::clamp((low + high) / 2, -90.0, 90.0) * planet::degrees;
-    return {111320 * std::max(0.01, std::cos(latitude)), 110574};
-}
-
 RefineMeaning meaning_of(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference,
                          const planet::MeshLooks& looks) {
     RefineMeaning m;
     m.reference = reference;
     m.somewhere_local = reference.frame == MeshFrame::enu && reference.origin == glm::dvec3(0);
     if (m.somewhere_local) m.reference = {};
-    if (m.reference.geographic) m.metres_per_unit = metres_per_degree(mesh.vertices);
+    m.metres_per_unit = metres_per_unit(m.reference, mesh.vertices);
     m.normals = !looks.normals.empty();
     m.uv = !looks.uv.empty();
     m.colors = !looks.colors.empty();
@@ -60,7 +50,19 @@ Vector take(const float*& from) {
 
 }  // namespace
 
-RefineBase read_refine_base(const std::string& path, bool weld) {
+glm::dvec2 metres_per_unit(const planet::MeshReference& reference, const std::vector<glm::dvec3>& vertices) {
+    if (!reference.geographic) return {1, 1};
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const glm::dvec3& v : vertices) {
+        low = std::min(low, v.y);
+        high = std::max(high, v.y);
+    }
+    const double latitude = std::clamp((low + high) / 2, -90.0, 90.0) * planet::degrees;
+    return {111320 * std::max(0.01, std::cos(latitude)), 110574};
+}
+
+RefineBase read_refine_base(const std::string& path, bool weld, const std::optional<MeshFrame>& frame,
+                            planet::MeshFormat format) {
     planet::MeshReference reference;
     planet::MeshLooks looks;
     planet::SurfaceMesh mesh = planet::read_mesh(path, &reference, &looks);
@@ -70,6 +72,12 @@ RefineBase read_refine_base(const std::string& path, bool weld) {
         throw planet::Error(planet::Fault::bad_data, path, *fault,
                             weld ? "a conforming triangle mesh" : "a conforming triangle mesh; --weld joins vertices");
     base.meaning = meaning_of(mesh, reference, looks);
+    const MeshFrame wanted = frame_for(frame, base.meaning.reference, format);
+    if (wanted != base.meaning.reference.frame) {
+        const FrameChange change(base.meaning.reference, wanted, mesh);
+        change.apply(mesh, looks);
+        base.meaning = meaning_of(mesh, change.reference(), looks);
+    }
     base.picture = std::move(looks.picture);
     base.mesh.attribute_width = width_of(base.meaning);
     base.mesh.attributes.reserve(base.mesh.attribute_width * mesh.vertices.size());

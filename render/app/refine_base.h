@@ -1,6 +1,7 @@
 #pragma once
 // Meshes from files as longest-side bisection takes them, and back.
 
+#include <optional>
 #include <string>
 
 #include "planet/bisection/plain_mesh.h"
@@ -17,8 +18,6 @@ struct RefineMeaning {
     bool somewhere_local = false;
     bool normals = false, uv = false, colors = false;  ///< which attributes vertices have, in this order
 
-    /// Whether coordinates can be turned into places on the planet, or are.
-    bool placed() const { return reference.frame != planet::MeshFrame::source || !reference.crs.empty(); }
     glm::dvec3 in_file(const glm::dvec3& p) const { return {p.x / metres_per_unit.x, p.y / metres_per_unit.y, p.z}; }
     glm::dvec3 in_metres(const glm::dvec3& p) const { return {p.x * metres_per_unit.x, p.y * metres_per_unit.y, p.z}; }
 };
@@ -30,9 +29,14 @@ struct RefineBase {
     std::size_t welded = 0;  ///< vertices that went
 };
 
-/// Reads a mesh. @param weld joins vertices at the same place first
-/// Throws planet::Error(bad_data) for what is no mesh, or no conforming one: its first offending side is named.
-RefineBase read_refine_base(const std::string& path, bool weld);
+/// Metres in a unit of x and of y: of degrees, near the middle of the mesh; else 1.
+glm::dvec2 metres_per_unit(const planet::MeshReference& reference, const std::vector<glm::dvec3>& vertices);
+
+/// Reads a mesh. @param weld joins vertices at the same place first @param frame asked for @param format to be written
+/// Throws planet::Error: bad_data for what is no mesh, or no conforming one: its first offending side is named; bad_usage
+/// for a frame in which it cannot be.
+RefineBase read_refine_base(const std::string& path, bool weld, const std::optional<planet::MeshFrame>& frame,
+                            planet::MeshFormat format);
 
 /// As a file has it.
 planet::SurfaceMesh surface_of(const planet::PlainMesh& mesh, const RefineMeaning& meaning);

@@ -8,8 +8,10 @@
 #include "planet/bisection/progressive.h"
 #include "planet/error.h"
 #include "planet/frames.h"
+#include "planet/geodesy/geodetic.h"
 #include "planet/parallel.h"
 #include "render/app/figures.h"
+#include "render/app/mesh_output.h"
 #include "render/app/progress.h"
 #include "render/app/refine_base.h"
 #include "render/app/refine_output.h"
@@ -38,6 +40,14 @@ double area_from_sides(std::array<double, 3> s) {
     return 0.25 * std::sqrt(std::max(0.0, (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))));
 }
 
+/// Above the middle of a side of an Earth-centred mesh, as high above the ellipsoid as its ends are in the mean: on the
+/// chord a planet would stay the solid that it was.
+glm::dvec3 between_heights(const glm::dvec3& a, const glm::dvec3& b) {
+    const auto height = [](const glm::dvec3& p) { return planet::height_from_ecef(planet::wgs84, p).m; };
+    const glm::dvec3 normal = planet::normal_from_ecef(planet::wgs84, (a + b) * 0.5);
+    return planet::ecef_from_normal(planet::wgs84, normal, {(height(a) + height(b)) / 2});
+}
+
 class MeshRefiner {
   public:
     MeshRefiner(const RefineCommand& command, Report& report)
@@ -45,7 +55,9 @@ class MeshRefiner {
         planet::check_frame(written_reference(base_.meaning, output_.format()), output_.format());
         if (!command.region.empty()) region_.emplace(command.region, base_.meaning);
         if (!command.elevation.empty()) read_terrain();
-        if (command.split && base_.meaning.reference.frame == planet::MeshFrame::ecef)
+        if (command.sides == SideGeometry::plan && earth_centred())
+            throw Error(Fault::bad_usage, "--sides", "an Earth-centred mesh has no plan", "space");
+        if (command.split && earth_centred())
             throw Error(Fault::bad_usage, "--split", "is a point in plan, and an Earth-centred mesh has none",
                         "--region for a part of a planet");
         if (command.max_triangles && *command.max_triangles < base_.mesh.triangles.size())
@@ -57,12 +69,12 @@ class MeshRefiner {
 
     void run() {
         progress_.update("refining", std::nan(""));
-        if (command_.steps)
-            uniform_steps();
-        else if (command_.split)
-            split_at(*command_.split);
-        else if (has_goal())
+        if (command_.steps) uniform_steps();
+        if (command_.split) split_at(*command_.split);
+        if (has_goal())
             refine_within_bound();
+        else
+            measure_as_written();
         finish();
     }
 
@@ -70,7 +82,7 @@ class MeshRefiner {
     RefineBase read() {
         const auto step = report_.step("read");
         progress_.update("reading", std::nan(""));
-        return read_refine_base(command_.source, command_.weld);
+        return read_refine_base(command_.source, command_.weld, command_.frame, output_.format());
     }
 
     /// Base vertices are put on the ground too: a bound could not hold beside one that is off it.
@@ -78,20 +90,32 @@ class MeshRefiner {
         const auto step = report_.step("elevation");
         terrain_.emplace(command_.elevation, command_.datum, base_.meaning);
         for (glm::dvec3& p : base_.mesh.vertices) {
-            const glm::dvec3 ground = terrain_->on_ground(p);
-            lifted_max_ = std::max(lifted_max_, std::abs(ground.z - p.z));
+            const glm::dvec3 ground = terrain_->ground(p).value_or(p);
+            lifted_max_ = std::max(lifted_max_, glm::distance(ground, p));
             p = ground;
         }
         if (terrain_->measure(base_.mesh).samples == 0)
             throw Error(Fault::bad_data, terrain_->name(), "has no sample within the mesh", "a raster that meets it");
     }
 
-    SideGeometry sides() const { return command_.sides.value_or(terrain_ ? SideGeometry::plan : SideGeometry::space); }
+    bool earth_centred() const { return base_.meaning.reference.frame == planet::MeshFrame::ecef; }
+    planet::BisectionRule rule() const { return command_.rule.value_or(planet::BisectionRule::modified); }
+    SideGeometry sides() const {
+        return command_.sides.value_or(terrain_ && !earth_centred() ? SideGeometry::plan : SideGeometry::space);
+    }
     planet::BisectionOptions bisection_options() const {
-        planet::BisectionOptions how{command_.rule, sides(), {}};
-        if (terrain_) how.place = [this](const glm::dvec3& midpoint) { return terrain_->on_ground(midpoint); };
+        planet::BisectionOptions how{rule(), sides(), {}};
+        if (terrain_ || earth_centred())
+            how.place = [this](const glm::dvec3& a, const glm::dvec3& b) { return place(a, b); };
         return how;
     }
+    glm::dvec3 place(const glm::dvec3& a, const glm::dvec3& b) const {
+        const glm::dvec3 middle = (a + b) * 0.5;
+        if (terrain_)
+            if (const auto ground = terrain_->ground(middle)) return *ground;
+        return earth_centred() ? between_heights(a, b) : middle;
+    }
+    std::string_view placed() const { return terrain_ ? "elevation" : earth_centred() ? "mean height" : "midpoint"; }
     bool has_goal() const { return command_.max_side || command_.max_deviation || command_.max_triangles; }
     std::function<bool(const TrianglePlaces&)> region() const {
         if (!region_) return {};
@@ -156,8 +180,8 @@ class MeshRefiner {
                             "takes more than " + std::to_string(most_triangles) + " triangles",
                             "a larger limit, or --max-triangles");
             set_stopped_by();
-            if (!command_.max_deviation) return;
             measure_as_written();
+            if (!command_.max_deviation) return;
             const double excess = measured_.max_in_region - *command_.max_deviation;
             if (excess <= measuring_slack_m || end_ != RefineEnd::met) break;
             tolerance -= 1.5 * excess;
@@ -199,11 +223,10 @@ class MeshRefiner {
     }
 
     void finish() {
-        measure_as_written();
         const planet::BisectionReport found = bisection_->report();
         fill_report(found);
         progress_.update("writing", std::nan(""));
-        if (command_.picture) output_.draw(surface_.vertices, surface_.triangles, levels(), base_.meaning);
+        if (command_.picture) output_.draw(plain_.vertices, plain_.triangles, levels(), base_.meaning);
         planet::MeshLooks looks = looks_of(plain_, base_.meaning);
         if (output_.format() == planet::MeshFormat::glb) looks.picture = base_.picture;
         output_.write(surface_, looks, base_.meaning, rounding_);
@@ -238,8 +261,8 @@ class MeshRefiner {
         report_.set("base_triangles", r.base_triangles);
         report_.set("base_vertices", r.base_vertices);
         if (command_.weld) report_.set("welded_vertices", base_.welded);
-        report_.set("rule", command_.rule == planet::BisectionRule::modified ? "modified" : "plain");
-        report_.set("sides", sides() == SideGeometry::plan ? "plan" : "space");
+        report_rule(rule(), sides(), report_);
+        report_.set("placed", placed());
         if (has_goal()) report_.set("order", order() == planet::SplitOrder::length ? "length" : "deviation");
         report_.set("stopped_by", stopped_by_);
         report_.set("splits", r.splits);
@@ -256,11 +279,7 @@ class MeshRefiner {
         report_.set("side_max_m", r.side_max);
         report_.set("side_max_placed_m", r.side_max_placed);
         report_.set("bisection_bytes", bisection_->bytes());
-        const planet::MeshReference& reference = base_.meaning.reference;
-        constexpr std::string_view frames[] = {"source", "utm", "enu", "ecef"};
-        report_.set("frame", frames[static_cast<std::size_t>(reference.frame)]);
-        report_.set("crs", reference.crs);
-        report_.set("vertical_datum", reference.vertical_datum);
+        report_reference(base_.meaning.reference, report_);
         if (terrain_) report_terrain();
     }
 

@@ -25,9 +25,10 @@ struct RefineCommand {
     std::string source;  ///< a mesh, or a progressive mesh (.oprog)
     bool weld = false;
 
-    planet::BisectionRule rule = planet::BisectionRule::modified;
-    std::optional<planet::SideGeometry> sides{};  ///< nothing: plan with elevation, else space
-    std::optional<planet::SplitOrder> order{};    ///< nothing: deviation with a bound of it, else length
+    std::optional<planet::BisectionRule> rule{};  ///< nothing: modified; of a progressive mesh, its own
+    std::optional<planet::SideGeometry>
+        sides{};  ///< nothing: plan with elevation, but of an Earth-centred mesh; else space
+    std::optional<planet::SplitOrder> order{};  ///< nothing: deviation with a bound of it, else length
 
     std::optional<double> max_side{}, max_deviation{};  ///< m
     std::optional<std::size_t> max_triangles{};
@@ -42,6 +43,7 @@ struct RefineCommand {
     std::optional<int> morph{};  ///< frames
     std::optional<planet::MeshFormat> frame_format{};
 
+    std::optional<planet::MeshFrame> frame{};       ///< nothing: the mesh's own if the format holds it, else enu
     std::optional<std::filesystem::path> output{};  ///< a file; with --morph a new folder
     std::optional<std::filesystem::path> progressive{}, picture{};
     std::optional<PictureSize> picture_size{};

@@ -1,10 +1,13 @@
 #include "render/app/refine_output.h"
+#include "render/app/mesh_output.h"
 
 #include <algorithm>
 
 #include "planet/bisection/progressive_file.h"
 #include "planet/elevation/image_io.h"
 #include "planet/error.h"
+#include "planet/exporters/reference_text.h"
+#include "planet/frames.h"
 #include "render/gl/context.h"
 #include "render/picture/mesh_picture.h"
 
@@ -17,6 +20,7 @@ using planet::MeshFormat;
 using planet::MeshFrame;
 using Triangles = std::span<const std::array<std::uint32_t, 3>>;
 
+constexpr double whole_planet_m = 3e6;  ///< the middle of one lies this near to the Earth's
 constexpr int least_fitting_height = 400, most_fitting_height = 3200;  ///< pixels
 
 void compare(const std::string& path, MeshFormat format, const planet::SurfaceMesh& written) {
@@ -58,6 +62,11 @@ glm::dvec3 middle_of(std::span<const glm::dvec3> vertices) {
 }
 
 }  // namespace
+
+void report_rule(planet::BisectionRule rule, planet::SideGeometry sides, Report& report) {
+    report.set("rule", rule == planet::BisectionRule::modified ? "modified" : "plain");
+    report.set("sides", sides == planet::SideGeometry::plan ? "plan" : "space");
+}
 
 planet::MeshReference written_reference(const RefineMeaning& meaning, MeshFormat format) {
     planet::MeshReference reference = meaning.reference;
@@ -140,7 +149,8 @@ void RefineOutput::draw(std::span<const glm::dvec3> vertices, Triangles triangle
     if (meaning.reference.frame == MeshFrame::ecef) {
         picture.planet = true;
         picture.look_from = middle_of(vertices);
-        if (!(glm::length(picture.look_from) > 1)) picture.look_from = {1, 0, 0};
+        if (!(glm::length(picture.look_from) > whole_planet_m))
+            picture.look_from = planet::normal_from_geodetic(20 * planet::degrees, 15 * planet::degrees);
     } else if (is_terrain(vertices, triangles)) {
         picture.relief = true;
     } else {

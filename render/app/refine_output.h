@@ -13,6 +13,9 @@
 
 namespace render {
 
+/// rule, sides: of a mesh, and of a progressive one.
+void report_rule(planet::BisectionRule rule, planet::SideGeometry sides, Report& report);
+
 /// What a file says of its coordinates. An .stl holds any that are not degrees and nowhere known.
 planet::MeshReference written_reference(const RefineMeaning& meaning, planet::MeshFormat format);
 
@@ -31,7 +34,8 @@ class RefineOutput {
     void write(const planet::SurfaceMesh& surface, const planet::MeshLooks& looks, const RefineMeaning& meaning,
                const planet::MeshRounding& rounding);
     void write_progressive(planet::Progressive&& mesh, const RefineMeaning& meaning);
-    /// Terrain and planets as `octaglobe mesh` draws them, free surfaces from an angle. @param level by triangle
+    /// Terrain and planets as `octaglobe mesh` draws them, free surfaces from an angle.
+    /// @param vertices as in a RefineBase @param level by triangle
     void draw(std::span<const glm::dvec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles,
               std::span<const std::uint8_t> level, const RefineMeaning& meaning);
     /// Last: what fails before leaves nothing behind.

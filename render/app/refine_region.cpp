@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "planet/error.h"
-#include "planet/geodesy/geodetic.h"
+#include "planet/frames.h"
 
 namespace render {
 namespace {
@@ -17,6 +17,13 @@ using Corners = std::array<glm::dvec2, 3>;
 
 double turn(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// Whether a triangle of longitudes and latitudes has a pole within: once around it, longitude makes a whole turn.
+bool holds_pole(const Corners& t) {
+    double turned = 0;
+    for (std::size_t k = 0; k < 3; ++k) turned += std::remainder(t[(k + 1) % 3].x - t[k].x, 360);
+    return std::abs(turned) > 180;
 }
 
 /// Even-odd, over all rings.
@@ -55,10 +62,10 @@ bool meet(const Corners& t, const std::vector<Ring>& rings) {
 
 RefineRegion::RefineRegion(const std::string& path, const RefineMeaning& meaning) : meaning_(meaning) {
     const planet::MeshReference& reference = meaning.reference;
-    geodetic_ = reference.frame == MeshFrame::enu || reference.frame == MeshFrame::ecef;
-    turns_ = geodetic_ || reference.geographic;
+    if (reference.frame == MeshFrame::enu || reference.frame == MeshFrame::ecef) places_.emplace(reference, "--region");
+    turns_ = places_ || reference.geographic;
     planet::FeatureOptions how;
-    if (!geodetic_) {
+    if (!places_) {
         how.crs = reference.crs;
         how.plain = reference.crs.empty();
     }
@@ -83,16 +90,22 @@ RefineRegion::RefineRegion(const std::string& path, const RefineMeaning& meaning
 
 glm::dvec2 RefineRegion::in_plan(const glm::dvec3& p) const {
     const glm::dvec3 q = meaning_.in_file(p);
-    if (!geodetic_) return glm::dvec2(q);
-    const planet::MeshReference& reference = meaning_.reference;
-    const bool enu = reference.frame == MeshFrame::enu;
-    const planet::Geodetic g =
-        planet::geodetic_from_ecef(planet::wgs84, enu ? reference.origin + reference.ecef_from_enu * q : q);
+    if (!places_) return glm::dvec2(q);
+    const planet::Geodetic g = places_->geodetic(q);
     return {g.longitude / planet::degrees, g.latitude / planet::degrees};
+}
+
+// Its sides are no lines there: all polygons that reach its latitudes count.
+bool RefineRegion::near_pole(const std::array<glm::dvec2, 3>& t) const {
+    const auto [low, high] = std::minmax({t[0].y, t[1].y, t[2].y});
+    return std::ranges::any_of(areas_, [&, south = low, north = high](const Area& area) {
+        return south + north > 0 ? area.high.y >= south : area.low.y <= north;
+    });
 }
 
 bool RefineRegion::meets(const planet::TrianglePlaces& triangle) const {
     Corners t{in_plan(triangle[0]), in_plan(triangle[1]), in_plan(triangle[2])};
+    if (places_ && holds_pole(t)) return near_pole(t);
     if (turns_)
         for (glm::dvec2& corner : t) corner.x += 360 * std::round((t[0].x - corner.x) / 360);
     for (const Area& area : areas_) {

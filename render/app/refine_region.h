@@ -1,11 +1,14 @@
 #pragma once
 // Polygons that say which triangles of a mesh are refined.
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "planet/bisection/bisection.h"
 #include "planet/elevation/features.h"
+#include "render/app/mesh_places.h"
 #include "render/app/refine_base.h"
 
 namespace render {
@@ -25,10 +28,11 @@ class RefineRegion {
         glm::dvec2 low, high;
     };
     glm::dvec2 in_plan(const glm::dvec3& p) const;
+    bool near_pole(const std::array<glm::dvec2, 3>& triangle) const;
 
     RefineMeaning meaning_;
-    bool geodetic_ = false;  ///< places are turned into longitude and latitude
-    bool turns_ = false;     ///< x is a longitude
+    std::optional<MeshPlaces> places_;  ///< of local and Earth-centred meshes
+    bool turns_ = false;                ///< x is a longitude
     std::vector<Area> areas_;
 };
 

@@ -11,9 +11,11 @@
 #include "planet/error.h"
 #include "planet/frames.h"
 #include "render/app/figures.h"
+#include "render/app/mesh_output.h"
 #include "render/app/output_folder.h"
 #include "render/app/progress.h"
 #include "render/app/refine_base.h"
+#include "render/app/refine_frame.h"
 #include "render/app/refine_output.h"
 #include "render/app/refine_view.h"
 
@@ -44,7 +46,12 @@ class StreamReader {
           output_(command, report),
           whole_(read()),
           meaning_(meaning_from(whole_.note(), whole_.base().attribute_width)),
-          selection_(whole_) {}
+          selection_(whole_) {
+        if (command.rule && *command.rule != whole_.rule())
+            throw Error(Fault::bad_usage, "--rule", "a progressive mesh keeps that by which it was made",
+                        whole_.rule() == planet::BisectionRule::modified ? "modified" : "plain");
+        change_frame();
+    }
 
     void run() {
         select();
@@ -67,19 +74,50 @@ class StreamReader {
         selection_.select([&](Index vertex) { return seen_coarse(whole_, vertex, eye); });
     }
 
+    MeshFormat format() const {
+        return command_.morph ? command_.frame_format.value_or(MeshFormat::glb) : output_.format();
+    }
+
+    /// The same frame for all of its meshes.
+    void change_frame() {
+        const planet::MeshFrame wanted = frame_for(command_.frame, meaning_.reference, format());
+        if (wanted != meaning_.reference.frame)
+            change_.emplace(meaning_.reference, wanted, surface_of(whole_.base(), meaning_));
+        planet::check_frame(written_reference(written_meaning(), format()), format());
+    }
+    RefineMeaning written_meaning() const {
+        RefineMeaning meaning = meaning_;
+        if (change_) {
+            meaning.reference = change_->reference();
+            meaning.metres_per_unit = {1, 1};
+        }
+        return meaning;
+    }
+
+    struct Written {
+        planet::SurfaceMesh surface;
+        planet::MeshLooks looks;
+    };
+    Written as_written(const planet::PlainMesh& plain) const {
+        Written out{surface_of(plain, meaning_), looks_of(plain, meaning_)};
+        if (change_) change_->apply(out.surface, out.looks);
+        return out;
+    }
+
     void write_mesh() {
         const planet::PlainMesh plain = selection_.mesh();
-        planet::SurfaceMesh surface = surface_of(plain, meaning_);
-        const planet::MeshRounding rounding = output_.round(surface, meaning_);
+        Written written = as_written(plain);
+        const planet::MeshRounding rounding = output_.round(written.surface, written_meaning());
         fill_report(plain);
-        if (command_.picture) draw();
-        output_.write(surface, looks_of(plain, meaning_), meaning_, rounding);
+        draw();
+        output_.write(written.surface, written.looks, written_meaning(), rounding);
         output_.commit();
         tell(plain);
     }
 
     /// Levels are how deep a triangle lies below its base triangle: one of four counts two.
     void draw() {
+        if (!command_.picture) return;
         std::vector<std::array<std::uint32_t, 3>> triangles;
         std::vector<std::uint8_t> levels;
         struct Visit {
@@ -101,22 +139,12 @@ class StreamReader {
                     left.push_back({below.child[i], visit.level + below.count / 2});
             }
         }
-        std::vector<glm::dvec3> places;
-        places.reserve(whole_.vertex_count());
-        for (const glm::dvec3& p : whole_.places()) places.push_back(meaning_.in_file(p));
-        output_.draw(places, triangles, levels, meaning_);
+        output_.draw(whole_.places(), triangles, levels, meaning_);
     }
 
-    MeshFormat frame_format() const {
-        if (command_.frame_format) return *command_.frame_format;
-        return meaning_.reference.geographic ? MeshFormat::ply : MeshFormat::glb;
-    }
-
+    // Every frame has the triangles of the last one, so that nothing flips from C'C to A'B' on the way: vertices move, each
+    // along its own line, and as little as one likes between frames.
     void write_frames() {
-        constexpr std::string_view endings[] = {".glb", ".ply", ".obj", ".stl"};
-        const MeshFormat format = frame_format();
-        const planet::MeshReference reference = written_reference(meaning_, format);
-        planet::check_frame(reference, format);
         OutputFolder folder("--output", *command_.output);
         std::size_t bytes = 0;
         planet::PlainMesh plain;
@@ -126,29 +154,36 @@ class StreamReader {
             plain = selection_.mesh([&](Index vertex) {
                 return fraction_in_frame(time, vertex - whole_.base_vertex_count(), whole_.split_count());
             });
-            planet::SurfaceMesh surface = surface_of(plain, meaning_);
-            const planet::MeshRounding rounding = planet::round_to_format(surface, reference, format);
-            char name[32];
-            std::snprintf(name, sizeof name, "frame_%05d", frame);
-            const std::filesystem::path path =
-                folder.path() / (name + std::string(endings[static_cast<std::size_t>(format)]));
-            std::ofstream out(path, std::ios::binary);
-            planet::write_mesh(
-                [&](std::string_view block) {
-                    bytes += block.size();
-                    out.write(block.data(), static_cast<std::streamsize>(block.size()));
-                },
-                surface, reference, format, rounding, looks_of(plain, meaning_));
-            out.flush();
-            if (!out) throw Error(Fault::bad_usage, "--output", "a frame cannot be written", "a disk with room");
+            bytes += write_frame(folder.path(), frame, plain);
         }
         fill_report(plain);
-        if (command_.picture) draw();
+        draw();
         report_.set("frames", *command_.morph);
         report_.set("output", command_.output->string());
         report_.set("output_bytes", bytes);
         folder.commit();
         tell(plain);
+    }
+
+    /// @return bytes
+    std::size_t write_frame(const std::filesystem::path& folder, int frame, const planet::PlainMesh& plain) const {
+        constexpr std::string_view endings[] = {".glb", ".ply", ".obj", ".stl"};
+        const planet::MeshReference reference = written_reference(written_meaning(), format());
+        Written written = as_written(plain);
+        const planet::MeshRounding rounding = planet::round_to_format(written.surface, reference, format());
+        char name[32];
+        std::snprintf(name, sizeof name, "frame_%05d", frame);
+        std::ofstream out(folder / (name + std::string(endings[static_cast<std::size_t>(format())])), std::ios::binary);
+        std::size_t bytes = 0;
+        planet::write_mesh(
+            [&](std::string_view block) {
+                bytes += block.size();
+                out.write(block.data(), static_cast<std::streamsize>(block.size()));
+            },
+            written.surface, reference, format(), rounding, written.looks);
+        out.flush();
+        if (!out) throw Error(Fault::bad_usage, "--output", "a frame cannot be written", "a disk with room");
+        return bytes;
     }
 
     void fill_report(const planet::PlainMesh& plain) {
@@ -158,9 +193,8 @@ class StreamReader {
         report_.set("base_vertices", whole_.base().vertices.size());
         report_.set("splits", plain.vertices.size() - whole_.base().vertices.size());
         report_.set("records_read", whole_.split_count());
-        report_.set("rule", whole_.rule() == planet::BisectionRule::modified ? "modified" : "plain");
+        report_rule(whole_.rule(), whole_.sides(), report_);
         const bool plan = whole_.sides() == planet::SideGeometry::plan;
-        report_.set("sides", plan ? "plan" : "space");
         angle_min_ = 4;
         for (const auto& t : plain.triangles) {
             std::array<glm::dvec3, 3> p{plain.vertices[t[0]], plain.vertices[t[1]], plain.vertices[t[2]]};
@@ -169,10 +203,7 @@ class StreamReader {
             angle_min_ = std::min(angle_min_, planet::smallest_angle(p[0], p[1], p[2]));
         }
         report_.set("angle_min_deg", angle_min_ / planet::degrees);
-        constexpr std::string_view frames[] = {"source", "utm", "enu", "ecef"};
-        report_.set("frame", frames[static_cast<std::size_t>(meaning_.reference.frame)]);
-        report_.set("crs", meaning_.reference.crs);
-        report_.set("vertical_datum", meaning_.reference.vertical_datum);
+        report_reference(written_meaning().reference, report_);
     }
 
     void tell(const planet::PlainMesh& plain) {
@@ -190,6 +221,7 @@ class StreamReader {
     RefineOutput output_;
     const Progressive whole_;
     const RefineMeaning meaning_;
+    std::optional<FrameChange> change_;
     Selection selection_;
     double angle_min_ = 0;
 };

@@ -1,56 +1,20 @@
 #include "render/app/refine_view.h"
 
-#include <charconv>
+#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "planet/error.h"
-#include "planet/geodesy/geodetic.h"
-#include "planet/geodesy/utm.h"
+#include "planet/frames.h"
+#include "render/app/mesh_places.h"
 
 namespace render {
-namespace {
-
-using planet::Error;
-using planet::Fault;
-using planet::MeshFrame;
-
-[[noreturn]] void refuse(const std::string& crs) {
-    throw Error(Fault::bad_usage, "--view",
-                crs.empty() ? "the mesh is at no known place" : "places are not known in " + crs.substr(0, 60),
-                "a mesh of frame enu, ecef or utm, or in EPSG:4326");
-}
-
-/// 326zz and 327zz: the zone, and whether it is a northern one.
-std::pair<int, bool> utm_zone(const std::string& crs) {
-    int code = 0;
-    if (!crs.starts_with("EPSG:")) refuse(crs);
-    const auto [end, failed] = std::from_chars(crs.data() + 5, crs.data() + crs.size(), code);
-    const int zone = code % 100;
-    if (failed != std::errc{} || end != crs.data() + crs.size() || (code / 100 != 326 && code / 100 != 327) ||
-        zone < 1 || zone > 60)
-        refuse(crs);
-    return {zone, code / 100 == 326};
-}
-
-/// At height 0 of the mesh's datum, in its coordinates.
-glm::dvec3 place_in_mesh(const planet::Geodetic& place, const RefineMeaning& meaning) {
-    const planet::MeshReference& reference = meaning.reference;
-    const glm::dvec3 ecef = planet::ecef_from_geodetic(planet::wgs84, place);
-    if (reference.frame == MeshFrame::ecef) return ecef;
-    if (reference.frame == MeshFrame::enu) return glm::transpose(reference.ecef_from_enu) * (ecef - reference.origin);
-    if (reference.geographic)
-        return meaning.in_metres({place.longitude / planet::degrees, place.latitude / planet::degrees, 0});
-    const auto [zone, north] = utm_zone(reference.crs);
-    const planet::Utm utm = planet::utm_from_geodetic(place, zone);
-    return {utm.easting, utm.northing + (utm.north == north ? 0 : north ? -1e7 : 1e7), 0};
-}
-
-}  // namespace
 
 glm::dvec3 eye_of(const RefineView& view, const planet::Progressive& mesh, const RefineMeaning& meaning) {
-    const bool ecef = meaning.reference.frame == MeshFrame::ecef;
-    const glm::dvec3 foot = place_in_mesh(view.place, meaning);
+    const bool ecef = meaning.reference.frame == planet::MeshFrame::ecef;
+    const glm::dvec3 foot = meaning.in_metres(MeshPlaces(meaning.reference, "--view").in_mesh(view.place));
+    if (std::isnan(foot.x))
+        throw planet::Error(planet::Fault::bad_usage, "--view", "the mesh's CRS does not reach that place",
+                            "a place nearer to the mesh");
     const glm::dvec3 up =
         ecef ? planet::normal_from_geodetic(view.place.latitude, view.place.longitude) : glm::dvec3(0, 0, 1);
     double nearest = std::numeric_limits<double>::infinity(), height = 0;

@@ -111,7 +111,10 @@ void decode(benchmark::State& state, double quantum) {
     BisectionOptions options;
     options.sides = SideGeometry::plan;
     if (quantum != 0)
-        options.place = [](const glm::dvec3& p) { return glm::dvec3(p.x, p.y, p.z + 10 * std::sin(p.x * 0.01)); };
+        options.place = [](const glm::dvec3& a, const glm::dvec3& b) {
+            const glm::dvec3 p = (a + b) * 0.5;
+            return glm::dvec3(p.x, p.y, p.z + 10 * std::sin(p.x * 0.01));
+        };
     Bisection mesh(tin(), options);
     RefineGoal goal;
     goal.max_triangles = 2 * wanted;

@@ -43,7 +43,10 @@ Bisection on_surface(unsigned seed = 1) {
     for (glm::dvec3& p : base.vertices) p.z = surface(p.x, p.y);
     BisectionOptions options;
     options.sides = SideGeometry::plan;
-    options.place = [](const glm::dvec3& p) { return glm::dvec3(p.x, p.y, surface(p.x, p.y)); };
+    options.place = [](const glm::dvec3& a, const glm::dvec3& b) {
+        const glm::dvec3 p = (a + b) * 0.5;
+        return glm::dvec3(p.x, p.y, surface(p.x, p.y));
+    };
     return Bisection(base, options);
 }
 
@@ -143,7 +146,7 @@ TEST(BisectionGoals, OnlyTheRegionIsRefined) {
 
 TEST(BisectionGoals, ASphereIsRefinedUntilItsPlacedSidesAreShort) {
     BisectionOptions options;
-    options.place = [](const glm::dvec3& p) { return normalize(p); };
+    options.place = [](const glm::dvec3& a, const glm::dvec3& b) { return normalize(a + b); };
     Bisection mesh(octahedron(), options);
     RefineGoal goal;
     goal.max_side = 0.1;

@@ -282,7 +282,10 @@ TEST(BisectionProgressive, MorphGoesFromTheCoarseMeshToTheFine) {
     const PlainMesh base = halved_squares(2, 2, 10);
     BisectionOptions options;
     options.sides = SideGeometry::plan;
-    options.place = [](const glm::dvec3& p) { return glm::dvec3(p.x, p.y, std::sin(p.x) * std::cos(p.y)); };
+    options.place = [](const glm::dvec3& a, const glm::dvec3& b) {
+        const glm::dvec3 p = (a + b) * 0.5;
+        return glm::dvec3(p.x, p.y, std::sin(p.x) * std::cos(p.y));
+    };
     Bisection mesh(base, options);
     for (int i = 0; i < 4; ++i) mesh.step();
     const Progressive whole = mesh.progressive();
@@ -325,7 +328,8 @@ Progressive hilly(SideGeometry sides, BisectionRule rule = BisectionRule::modifi
     base.attribute_width = 3;
     base.attributes.resize(3 * base.vertices.size(), 0.5f);
     BisectionOptions options{rule, sides, {}};
-    options.place = [&](const glm::dvec3& p) {
+    options.place = [&](const glm::dvec3& a, const glm::dvec3& b) {
+        const glm::dvec3 p = (a + b) * 0.5;
         return sides == SideGeometry::plan ? glm::dvec3(p.x, p.y, 100 * std::sin(p.x * 1e-5))
                                            : p + glm::dvec3(1.5, -2.5, 100 * std::sin(p.x * 1e-5));
     };

@@ -24,6 +24,12 @@ void write_inputs(const ScratchFolder& folder) {
     planet::MeshReference ecef;
     ecef.frame = planet::MeshFrame::ecef;
     write_mesh_file(folder / "ecef.ply", mesh, ecef);
+    planet::MeshReference lambert;
+    lambert.crs = "EPSG:2154";
+    write_mesh_file(folder / "lambert.ply", mesh, lambert);
+    SurfaceMesh world = terrain_rectangle();
+    for (glm::dvec3& v : world.vertices) v.x = v.x < 10.2 ? -170 : 170;
+    write_mesh_file(folder / "world.ply", world, degrees_reference());
     const std::string whole = content(folder / "mesh.ply");
     write_text(folder / "short.ply", whole.substr(0, whole.size() / 2));
     write_text(folder / "text.oprog", "no stream");
@@ -42,7 +48,12 @@ void write_inputs(const ScratchFolder& folder) {
     write_text(folder / "lies.ply",
                "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
                "property float z\nelement face 4000000000\nproperty list uchar int vertex_indices\nend_header\n");
-    hilly_terrain().write(folder / "dem.vrt");
+    Terrain terrain = hilly_terrain();
+    terrain.write(folder / "dem.vrt");
+    terrain.crs = "+proj=longlat +R=1737400 +no_defs";
+    terrain.write(folder / "moon.vrt");
+    write_text(folder / "heights.png",
+               planet::testing::png_bytes(9, 9, 8, [](int x, int y) { return static_cast<unsigned>(x * y); }));
     write_features(folder / "line.geojson", R"({"type":"LineString","coordinates":[[10,50],[10.3,49.7]]})");
 }
 
@@ -102,7 +113,10 @@ constexpr Refusal limits[] = {
     {"mesh.ply --max-side 9 --rule both -o t.ply", 2, "--rule: 'both' is unknown", "modified, plain"},
     {"mesh.ply --max-deviation 9 -o t.ply", 2, "refine: --max-deviation requires --elevation", "--help"},
     {"away.ply --elevation dem.vrt --max-deviation 9 -o t.ply", 3, "dem.vrt: has no sample within the mesh", "meets"},
-    {"ecef.ply --elevation dem.vrt --max-deviation 9 -o t.ply", 2, "--elevation: goes with no Earth-centred", "enu"},
+    {"ecef.ply --steps 1 --sides plan -o t.ply", 2, "--sides: an Earth-centred mesh has no plan", "space"},
+    {"ecef.ply --elevation dem.vrt --max-deviation 9 -o t.ply", 3, "dem.vrt: has no sample within the mesh", "meets"},
+    {"ecef.ply --elevation heights.png --max-deviation 9 -o t.ply", 2, "heights.png: has no place on the planet", ""},
+    {"degrees.ply --elevation moon.vrt --max-deviation 9 -o t.ply", 2, "--elevation: moon.vrt is in ", "EPSG:4326"},
     {"degrees.ply --elevation missing.tif --max-deviation 9 -o t.ply", 3, "missing.tif: no such file", "GeoTIFF"},
 };
 INSTANTIATE_TEST_SUITE_P(Limits, RefineRefusals, testing::ValuesIn(limits));
@@ -113,6 +127,8 @@ constexpr Refusal streams[] = {
     {"mesh.ply --morph 9 -o t", 2, "--morph: is for progressive meshes", ".oprog"},
     {"out.oprog --steps 1 -o t.ply", 2, "refine: a progressive mesh is not refined further", "--at"},
     {"out.oprog --weld -o t.ply", 2, "refine: a progressive mesh is not refined further", "--at"},
+    {"out.oprog --rule plain -o t.ply", 2, "--rule: a progressive mesh keeps that by which it was made", "modified"},
+    {"out.oprog --frame ecef -o t.ply", 2, "--frame: the mesh is at no known place", "EPSG:4326"},
     {"out.oprog --at 1.1 -o t.ply", 2, "--at: '1.1' is out of range", "0 to 1"},
     {"out.oprog --at x -o t.ply", 2, "--at: 'x' is not a number", ""},
     {"out.oprog --view 1,2 -o t.ply", 2, "--view: '1,2' is no view", "LAT,LON,RANGE"},
@@ -132,7 +148,12 @@ constexpr Refusal outputs[] = {
     {"mesh.ply --steps 1 --progressive t.ply", 2, "--progressive: 't.ply' has another ending", ".oprog"},
     {"mesh.ply --steps 1 -o t.ply --json t.ply", 2, "refine: one file for two things", "a file each"},
     {"mesh.ply --steps 1 -o t.ply --picture p.xyz", 2, "", ""},
-    {"degrees.ply --steps 1 -o t.glb", 2, ".glb: its coordinates are lengths", "enu, utm or ecef"},
+    {"degrees.ply --steps 1 --frame source -o t.glb", 2, ".glb: its coordinates are lengths", "enu, utm or ecef"},
+    {"ecef.ply --steps 1 --frame source -o t.ply", 2, "--frame: the mesh's source is not known", "enu, ecef or utm"},
+    {"mesh.ply --steps 1 --frame enu -o t.ply", 2, "--frame: the mesh is at no known place", "EPSG:4326"},
+    {"lambert.ply --steps 1 --frame enu -o t.ply", 2, "--frame: places are not known in EPSG:2154", "EPSG:4326"},
+    {"mesh.ply --steps 1 --frame local -o t.ply", 2, "--frame: 'local' is unknown", "source, utm, enu, ecef"},
+    {"world.ply --steps 1 --frame utm -o t.ply", 2, "--frame: does not reach all of the mesh", "another frame"},
     {"mesh.ply --max-side 1e-4 --max-triangles 9 --steps 1 -o t.ply", 2, "--steps: goes with no limit", "--steps"},
 };
 INSTANTIATE_TEST_SUITE_P(Outputs, RefineRefusals, testing::ValuesIn(outputs));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "planet/geodesy/geodetic.h"
 #include "tests/render/app/refine_program.h"
 
 namespace render {
@@ -56,7 +57,7 @@ TEST_F(RefineStreamTest, FramesMoveFromFlatToTerrain) {
     hilly_terrain().write(folder_ / "dem.vrt");
     write_mesh_file(folder_ / "flat.ply", terrain_rectangle(), degrees_reference());
     refine("flat.ply --elevation dem.vrt --max-deviation 50 --progressive hills.oprog");
-    refine("hills.oprog --morph 2 -o frames");  // in degrees: .ply
+    refine("hills.oprog --morph 2 --format ply -o frames");
     const SurfaceMesh flat = read("frames/frame_00000.ply"), hilly = read("frames/frame_00001.ply");
     // Halfway between the corners there is no relief yet.
     const auto of_corners = [&](const SurfaceMesh& mesh) {
@@ -74,6 +75,58 @@ TEST_F(RefineStreamTest, FramesMoveFromFlatToTerrain) {
     }
     EXPECT_TRUE(
         std::ranges::any_of(hilly.vertices, [&](const glm::dvec3& v) { return v.z < low - 50 || v.z > high + 50; }));
+}
+
+/// The longest way of a vertex from one frame to the next, metres.
+double longest_step(const std::vector<SurfaceMesh>& frames) {
+    double longest = 0;
+    for (std::size_t i = 1; i < frames.size(); ++i)
+        for (std::size_t v = 0; v < frames[i].vertices.size(); ++v)
+            longest = std::max(longest, std::abs(frames[i].vertices[v].z - frames[i - 1].vertices[v].z));
+    return longest;
+}
+
+// The triangles are those of the last frame in all, whatever flips on the way there, so the surface moves as its vertices
+// do; and the more frames, the less.
+TEST_F(RefineStreamTest, NothingJumpsFromFrameToFrame) {
+    hilly_terrain().write(folder_ / "dem.vrt");
+    write_mesh_file(folder_ / "flat.ply", terrain_rectangle(), degrees_reference());
+    const Json made = refine("flat.ply --elevation dem.vrt --max-deviation 50 --progressive hills.oprog");
+    const auto frames = [&](int count) {
+        refine("hills.oprog --morph " + std::to_string(count) + " --format ply -o frames" + std::to_string(count));
+        std::vector<SurfaceMesh> out;
+        for (int i = 0; i < count; ++i) {
+            char name[40];
+            std::snprintf(name, sizeof name, "frames%d/frame_%05d.ply", count, i);
+            out.push_back(read(name));
+            EXPECT_EQ(out.back().triangles, out.front().triangles);
+        }
+        return out;
+    };
+    const double coarse = longest_step(frames(9)), fine = longest_step(frames(65));
+    EXPECT_GT(coarse, 20);
+    EXPECT_LT(4 * fine, coarse);
+    EXPECT_GT(made["pending_triangles"], 0) << "there are triangles that became four, and some did";
+}
+
+TEST_F(RefineStreamTest, KeepsItsRuleAndIsPutIntoFrames) {
+    EXPECT_EQ(refine("out.oprog --rule modified -o all.ply")["rule"], "modified");
+    planet::MeshReference degrees = degrees_reference();
+    degrees.vertical_datum = "ellipsoid";
+    write_mesh_file(folder_ / "flat.ply", terrain_rectangle(), degrees);
+    refine("flat.ply --steps 4 --progressive flat.oprog");
+    EXPECT_EQ(refine("flat.oprog --at 0.5 -o half.glb")["frame"], "enu");
+    EXPECT_EQ(refine("flat.oprog --at 0.5 -o half.ply")["frame"], "source");
+    EXPECT_EQ(refine("flat.oprog --at 0.5 --frame ecef -o ecef.ply")["frame"], "ecef");
+    const SurfaceMesh flat = read("half.ply"), ecef = read("ecef.ply");
+    ASSERT_EQ(flat.vertices.size(), ecef.vertices.size());
+    for (std::size_t v = 0; v < flat.vertices.size(); ++v) {
+        const glm::dvec3 p = flat.vertices[v];
+        const planet::Geodetic g{p.y * planet::degrees, p.x * planet::degrees, {p.z}};
+        EXPECT_LT(glm::distance(planet::ecef_from_geodetic(planet::wgs84, g), ecef.vertices[v]), 1e-6);
+    }
+    EXPECT_EQ(refine("flat.oprog --morph 3 -o frames")["frame"], "enu");
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "frames/frame_00002.glb"));
 }
 
 TEST_F(RefineStreamTest, AViewIsFineNearThePlaceOnly) {
