@@ -95,6 +95,8 @@ TEST(Posters, AStoppedOneLeavesNothing) {
         Process drawing(folder.path(), words("render --size 12000x12000 -o " + name));
         for (int i = 0; i < 1000 && folder.names().empty(); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        // The image library makes the file and only then tells its name.
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
         ::kill(drawing.id(), SIGTERM);
         EXPECT_EQ(drawing.wait().status, 128 + SIGTERM);
         EXPECT_TRUE(folder.names().empty()) << folder.names().front();
