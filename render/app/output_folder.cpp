@@ -23,10 +23,8 @@ OutputFolder::OutputFolder(std::string where, fs::path target) : where_(std::mov
     for (int attempt = 0;; ++attempt) {
         temporary_ = target_;
         temporary_ += "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".part";
-        if (::mkdir(temporary_.c_str(), 0777) == 0) {
-            listed_ = TemporaryName(temporary_);
-            return;
-        }
+        listed_ = TemporaryName(temporary_);  // before it is there: a signal may come at once
+        if (::mkdir(temporary_.c_str(), 0777) == 0) return;
         if (errno == EEXIST && attempt < 100) continue;
         const int error = errno;
         temporary_.clear();

@@ -96,12 +96,12 @@ void VideoEncoder::open_temporary() {
         name += "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".part";
         name += target_.extension();
         const fs::path path = target_.parent_path() / name;
+        listed_ = TemporaryName(path);  // before it is there: a signal may come at once
         const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file < 0 && errno == EEXIST && attempt < 100) continue;
         if (file < 0) fail("cannot be written: " + reason(errno));
         ::close(file);
         temporary_ = path;
-        listed_ = TemporaryName(temporary_);
         return;
     }
 }
