@@ -6,6 +6,7 @@
 
 #include "planet/elevation/image_io.h"
 #include "planet/error.h"
+#include "planet/exporters/reference_text.h"
 #include "render/app/raster_frames.h"
 #include "render/gl/context.h"
 
@@ -81,8 +82,7 @@ void refuse_bound(double asked, double possible, MeshFormat format) {
 }
 
 void report_reference(const planet::MeshReference& reference, Report& report) {
-    constexpr std::string_view frames[] = {"source", "utm", "enu", "ecef"};
-    report.set("frame", frames[static_cast<std::size_t>(reference.frame)]);
+    report.set("frame", planet::to_string(reference.frame));
     report.set("crs", reference.crs);
     report.set("vertical_datum", reference.vertical_datum);
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "render/app/temporary_names.h"
+
 namespace render {
 
 /// Opens a temporary file beside the target at once, so that an unwritable target is refused before any work is done;
@@ -35,6 +37,7 @@ class OutputFile {
     std::string where_;
     std::filesystem::path target_, known_as_;
     std::filesystem::path temporary_;  ///< empty when the target is written in place
+    TemporaryName listed_;
     int descriptor_ = -1;
 };
 
