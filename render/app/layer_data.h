@@ -29,6 +29,8 @@ class LayerData {
     /// Whether any has polygons or a mesh, shown or not.
     bool needs_stencil() const;
 
+    /// Whether none was loaded.
+    bool empty() const { return own_.empty() && coastlines_.vertices == 0 && borders_.vertices == 0; }
     /// Exchanges the places of two of own().
     void swap(std::size_t a, std::size_t b) { std::swap(own_[a], own_[b]); }
     /// Of own().

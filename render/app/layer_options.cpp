@@ -23,7 +23,7 @@ constexpr glm::vec3 palette[] = {{1.00f, 0.80f, 0.00f}, {0.31f, 0.76f, 0.97f}, {
 
 constexpr std::string_view keys[] = {"color", "width", "opacity", "fill", "label"};
 constexpr std::string_view accepted = "FILE,color=#ffcc00,width=2,opacity=0.8,fill=0.2,label=NAME";
-constexpr Range width_range{0.5, 64}, part_range{0, 1};
+constexpr Range width_range{0.5, 16}, part_range{0, 1};
 
 glm::vec3 parse_color(std::string_view where, std::string_view text) {
     unsigned rgb = 0;

@@ -142,7 +142,7 @@ class Painter {
                 pixels.resize(static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.height) * 3);
             }
             const PicturePart kept = parts_.kept(*part);
-            paint_part(parts_.drawn(*part), meshes_[last_].segments, kept, band, pixels);
+            paint_part(parts_.drawn(*part), kept, meshes_[last_].segments, band, pixels);
             done += static_cast<double>(kept.width) * kept.height;
             options_.progress("drawing", done / all);
         }
@@ -225,7 +225,7 @@ class Painter {
     }
 
     /// @param part that is drawn @param kept of it @param band of the picture, into whose pixels that goes
-    void paint_part(const PicturePart& part, const planet::Segments& segments, const PicturePart& kept,
+    void paint_part(const PicturePart& part, const PicturePart& kept, const planet::Segments& segments,
                     const PicturePart& band, std::vector<std::uint8_t>& pixels) {
         std::vector<std::uint8_t> drawn;
         steps_.time("draw", [&] {
@@ -235,9 +235,12 @@ class Painter {
                 target_ = Framebuffer(part.width, part.height, looks_.target_options(samples));
             }
             target_.bind();
-            // What is not wanted need not be drawn; OpenGL counts rows from below.
+            // What is not wanted need not be drawn, but for where the depth of what layers lie on is looked up. OpenGL
+            // counts rows from below.
+            const PicturePart needed = layers_.empty() ? kept : grown(kept, LayerPass::reach_px);
             gl().Enable(GL_SCISSOR_TEST);
-            gl().Scissor(kept.x - part.x, part.y + part.height - kept.y - kept.height, kept.width, kept.height);
+            gl().Scissor(needed.x - part.x, part.y + part.height - needed.y - needed.height, needed.width,
+                         needed.height);
             target_.clear(0, 0, 0, 1);
             DrapeGround ground = surface_.for_layers(segments, camera_, part);
             looks_.draw({.camera = camera_,

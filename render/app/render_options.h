@@ -86,9 +86,9 @@ struct RenderOptions {
     std::optional<std::filesystem::path> store{};  ///< a baked store instead of the default Earth
     std::vector<std::filesystem::path> imagery{};  ///< pictures of the whole globe, later on top
 
-    std::optional<PictureCrop> crop{};  ///< only these pixels of the picture, just as they are in the whole
     std::vector<LayerOptions> layers{};  ///< over the terrain, later on top
 
+    std::optional<PictureCrop> crop{};  ///< only these pixels of the picture, just as they are in the whole
     std::filesystem::path output = "globe.png";
 
     /// Told how far a step is, 0..1 or NaN, from any thread. Never null.

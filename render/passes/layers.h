@@ -14,6 +14,9 @@ namespace render {
 
 class LayerPass {
   public:
+    /// Farther from a pixel no depth is asked for: half of the largest mark, with its rim.
+    static constexpr int reach_px = 40;
+
     /// With the context that is current.
     LayerPass();
 

@@ -26,7 +26,7 @@ class LayerCommand : public testing::Test {
         GTEST_SKIP() << "no usable OpenGL";
     }
     void write(const std::string& name, const std::string& text) {
-        std::ofstream(folder_ / name, std::ios::binary) << text;
+        std::ofstream(folder_.path() / name, std::ios::binary) << text;
     }
     Outcome render(const std::string& arguments) {
         return run(folder_.path(), words("render --size 200x200 " + arguments));
