@@ -110,9 +110,17 @@ class MeshRefiner {
     }
     glm::dvec3 place(const glm::dvec3& a, const glm::dvec3& b) const {
         const glm::dvec3 middle = (a + b) * 0.5;
-        if (terrain_)
-            if (const auto ground = terrain_->ground(middle)) return *ground;
-        return earth_centred() ? between_heights(a, b) : middle;
+        glm::dvec3 there = earth_centred() ? between_heights(a, b) : middle;
+        if (terrain_) there = terrain_->ground(middle).value_or(there);
+        const double step = progressive_step();
+        return step == 0 ? there : middle + glm::round((there - middle) / step) * step;
+    }
+    /// So many metres from midpoints, times a whole number, a progressive mesh has its places: a height takes it two bytes, not
+    /// eight. 0: as they are.
+    double progressive_step() const {
+        constexpr double step = 1.0 / 256, least_bound = 100 * step;
+        const bool placed = terrain_ || earth_centred();
+        return command_.progressive && placed && command_.max_deviation.value_or(least_bound) >= least_bound ? step : 0;
     }
     std::string_view placed() const { return terrain_ ? "elevation" : earth_centred() ? "mean height" : "midpoint"; }
     bool has_goal() const { return command_.max_side || command_.max_deviation || command_.max_triangles; }
@@ -218,7 +226,12 @@ class MeshRefiner {
         planet::PlainMesh written{{}, surface_.triangles};
         written.vertices.reserve(surface_.vertices.size());
         for (const glm::dvec3& p : surface_.vertices) written.vertices.push_back(base_.meaning.in_metres(p));
-        measured_ = terrain_->measure(written, region());
+        // As it was refined: what is rounded may meet another polygon.
+        measured_ = terrain_->measure(
+            written, !region_ ? std::function<bool(std::size_t)>() : [this](std::size_t t) {
+                const auto& [a, b, c] = plain_.triangles[t];
+                return region_->meets({plain_.vertices[a], plain_.vertices[b], plain_.vertices[c]});
+            });
     }
 
     void finish() {
@@ -229,7 +242,8 @@ class MeshRefiner {
         planet::MeshLooks looks = looks_of(plain_, base_.meaning);
         if (output_.format() == planet::MeshFormat::glb) looks.picture = base_.picture;
         output_.write(surface_, looks, base_.meaning, rounding_);
-        if (command_.progressive) output_.write_progressive(bisection_->progressive(), base_.meaning);
+        if (command_.progressive)
+            output_.write_progressive(bisection_->progressive(), progressive_step(), base_.meaning);
         output_.commit();
         tell(found);
     }

@@ -126,13 +126,13 @@ void RefineOutput::write(const planet::SurfaceMesh& surface, const planet::MeshL
     report_.set("output_bytes", bytes);
 }
 
-void RefineOutput::write_progressive(planet::Progressive&& mesh, const RefineMeaning& meaning) {
+void RefineOutput::write_progressive(planet::Progressive&& mesh, double step, const RefineMeaning& meaning) {
     if (!progressive_) return;
-    const auto step = report_.step("progressive");
+    const auto timed = report_.step("progressive");
     std::string note = note_from(meaning);
     if (note.size() > planet::Progressive::max_note) note.clear();  // a CRS of that length is damaged
     mesh.set_note(std::move(note));
-    const std::vector<std::uint8_t> bytes = planet::encode_progressive(mesh);
+    const std::vector<std::uint8_t> bytes = planet::encode_progressive(mesh, {step});
     progressive_->append({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     const planet::PlainMesh& base = mesh.base();
     const std::size_t of_base =

@@ -216,11 +216,12 @@ double RefineTerrain::deviation(const planet::TrianglePlaces& triangle) const {
 }
 
 RefineTerrain::Measured RefineTerrain::measure(const planet::PlainMesh& mesh,
-                                               const std::function<bool(const planet::TrianglePlaces&)>& region) const {
+                                               const std::function<bool(std::size_t triangle)>& region) const {
     Measured out;
     std::vector<bool> met(samples_.size());
     double squares = 0;
-    for (const auto& t : mesh.triangles) {
+    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+        const auto& t = mesh.triangles[triangle];
         const planet::TrianglePlaces places{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
         double largest = 0;
         for_each_sample(places, [&](std::size_t i, double d) {
@@ -231,7 +232,7 @@ RefineTerrain::Measured RefineTerrain::measure(const planet::PlainMesh& mesh,
             ++out.samples;
         });
         out.max = std::max(out.max, largest);
-        if (largest > out.max_in_region && (!region || region(places))) out.max_in_region = largest;
+        if (largest > out.max_in_region && (!region || region(triangle))) out.max_in_region = largest;
     }
     const auto valid =
         std::count_if(samples_.begin(), samples_.end(), [](const glm::dvec3& s) { return !std::isnan(s.z); });

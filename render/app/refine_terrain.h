@@ -32,12 +32,11 @@ class RefineTerrain {
 
     struct Measured {
         double max = 0, rms = 0;                 ///< m
-        double max_in_region = 0;                ///< m, over triangles for which `region` holds
+        double max_in_region = 0;                ///< m, over triangles in the region
         std::size_t samples = 0, uncovered = 0;  ///< valid ones in triangles, each counted once; in none
     };
-    /// @param region empty: all triangles
-    Measured measure(const planet::PlainMesh& mesh,
-                     const std::function<bool(const planet::TrianglePlaces&)>& region = {}) const;
+    /// @param region whether a triangle is in it; empty: all are
+    Measured measure(const planet::PlainMesh& mesh, const std::function<bool(std::size_t triangle)>& region = {}) const;
 
   private:
     std::size_t index(int column, int row) const {
