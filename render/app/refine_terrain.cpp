@@ -68,7 +68,7 @@ RefineTerrain::RefineTerrain(const std::string& path, std::optional<planet::Vert
         ecef_from_mesh_ = of_samples.ecef_from_enu;
         verticals_.resize(raster_->count());
     }
-    if (kind == MeshFrame::ecef) field_ = std::make_unique<const planet::RasterField>(raster_, above);
+    if (meaning.round) field_ = std::make_unique<const planet::RasterField>(raster_, above);
     place_samples(frame, meaning);
     plant_tree();
 }
@@ -147,7 +147,8 @@ std::optional<glm::dvec3> RefineTerrain::ground(const glm::dvec3& p) const {
         const glm::dvec3 normal = ecef_normal(p);
         const double h = static_cast<double>(field_->height(normal));
         if (std::isnan(h)) return std::nullopt;
-        return planet::ecef_from_normal(planet::wgs84, normal, {h + (geoid_ ? geoid_->undulation(normal).m : 0)});
+        const double N = geoid_ ? geoid_->undulation(normal).m : 0;
+        return glm::transpose(ecef_from_mesh_) * (planet::ecef_from_normal(planet::wgs84, normal, {h + N}) - origin_);
     }
     constexpr double beyond = 1;  // samples: a border that is crossed is followed outwards
     glm::dvec2 at = column_row(glm::dvec2(p));

@@ -24,8 +24,8 @@ class RefineTerrain {
     RefineTerrain(const std::string& path, std::optional<planet::VerticalDatum> datum, const RefineMeaning& meaning);
 
     const std::string& name() const { return raster_->name; }
-    /// The ground at a place: between samples bilinear and, of an Earth-centred mesh, bicubic. It has the place's x and y;
-    /// of an Earth-centred mesh its vertical. Nothing where no sample is near.
+    /// The ground at a place: between samples bilinear, at the place's x and y. Of a round mesh bicubic, on its vertical.
+    /// Nothing where no sample is near.
     std::optional<glm::dvec3> ground(const glm::dvec3& p) const;
     /// The largest distance of any sample in a triangle, its sides included. 0 without samples.
     double deviation(const planet::TrianglePlaces& triangle) const;
@@ -56,12 +56,11 @@ class RefineTerrain {
     void for_each_sample(const planet::TrianglePlaces& triangle, Visit&& visit) const;
 
     std::shared_ptr<const planet::Raster> raster_;
-    std::shared_ptr<const planet::Geoid> geoid_;  ///< null where heights are used as they are
-    /// Of an Earth-centred mesh.
-    std::unique_ptr<const planet::RasterField> field_;
-    std::vector<glm::dvec3> samples_;   ///< NaN: void
-    std::vector<glm::vec3> verticals_;  ///< empty: z everywhere
-    glm::dvec3 origin_{0};              ///< ecef = origin + ecef_from_mesh p, where there are verticals
+    std::shared_ptr<const planet::Geoid> geoid_;        ///< null where heights are used as they are
+    std::unique_ptr<const planet::RasterField> field_;  ///< of a round mesh
+    std::vector<glm::dvec3> samples_;                   ///< NaN: void
+    std::vector<glm::vec3> verticals_;                  ///< empty: z everywhere
+    glm::dvec3 origin_{0};                              ///< ecef = origin + ecef_from_mesh p, where there are verticals
     glm::dmat3 ecef_from_mesh_{1};
     SampleTree tree_;  ///< by unit normals where there are verticals, else by x and y
 };

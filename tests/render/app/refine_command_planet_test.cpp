@@ -83,6 +83,25 @@ TEST_F(RefineCommandTest, VerticesOfAPlanetAreAsHighAsTheirSides) {
     }));
 }
 
+// In an .stl, which is local, too.
+TEST_F(RefineCommandTest, APlanetInALocalFrameIsRound) {
+    write_mesh_file(folder_ / "planet.ply", octahedron(), earth_centred());
+    EXPECT_EQ(refine("planet.ply --steps 4 -o round.stl")["frame"], "enu");
+    refine("planet.ply --steps 4 --frame enu -o local.ply");
+    MeshReference reference;
+    const SurfaceMesh local = planet::read_mesh((folder_ / "local.ply"), &reference);
+    const SurfaceMesh round = planet::read_mesh((folder_ / "round.stl"));
+    EXPECT_EQ(round.triangles.size(), local.triangles.size());
+    for (const glm::dvec3& p : local.vertices)
+        ASSERT_NEAR(planet::height_from_ecef(wgs84, reference.origin + reference.ecef_from_enu * p).m, 0, 1e-6);
+    const Terrain terrain = hilly_terrain();
+    terrain.write(folder_ / "dem.vrt");
+    refine("planet.ply --frame enu --elevation dem.vrt --datum ellipsoid --max-deviation 50 -o fine.ply");
+    SurfaceMesh fine = planet::read_mesh((folder_ / "fine.ply"), &reference);
+    for (glm::dvec3& p : fine.vertices) p = reference.origin + reference.ecef_from_enu * p;
+    EXPECT_LE(largest_deviation(fine, terrain), 50 + 1e-6);
+}
+
 TEST_F(RefineCommandTest, PlacedSidesOfAPlanetAreShort) {
     write_mesh_file(folder_ / "planet.ply", octahedron(), earth_centred());
     const Json report = refine("planet.ply --max-side 500km -o round.ply");
