@@ -102,9 +102,9 @@ class LeafMesh {
     void reserve(std::size_t leaves);
     std::size_t bytes() const;
 
-    /// Fetch into the cache what the split of a leaf will need: first the leaf, then what lies around it, then
-    /// what lies around its neighbour. Inlined by force: GCC 12 takes calls that do nothing but fetch for calls that do
-    /// nothing, and leaves them out.
+    /// Fetch into the cache what the split of a leaf will need: first the leaf, then what lies around it, then what lies
+    /// around its neighbour, then what a flip there relinks. Inlined by force: GCC 12 takes calls that do nothing but fetch for
+    /// calls that do nothing, and leaves them out.
     [[gnu::always_inline]] void prefetch_leaf(Index t) const { __builtin_prefetch(&leaves_[t]); }
     [[gnu::always_inline]] void prefetch_around(Index t) const {
         const Leaf& leaf = leaves_[t];
@@ -117,14 +117,15 @@ class LeafMesh {
     }
     [[gnu::always_inline]] void prefetch_beyond(Index t) const {
         const Leaf& leaf = leaves_[t];
-        if (leaf.kind != LeafKind::complete) {
-            const Index outer = leaves_[sibling(leaf)].beyond[1];
-            if (outer != none) prefetch_leaf(outer);
-        }
+        prefetch_beyond_sibling(leaf);
         if (leaf.beyond[0] == none) return;
         const Leaf& n = leaves_[leaf.beyond[0]];
         for (const Index outer : {n.beyond[1], sibling(n)})
             if (outer != none) prefetch_leaf(outer);
+    }
+    [[gnu::always_inline]] void prefetch_flip_beyond(Index t) const {
+        const Index n = leaves_[t].beyond[0];
+        if (n != none) prefetch_beyond_sibling(leaves_[n]);
     }
 
   private:
@@ -136,8 +137,16 @@ class LeafMesh {
         unsigned longest;
     };
 
-    /// Of a half: the other one, or the quarter of it at C'C. Of others: what is beyond side 1.
-    static Index sibling(const Leaf& t) { return t.beyond[t.kind == LeafKind::half_first ? 2 : 1]; }
+    /// Of a half or quarter: what is across C'C, always there. Of others: what is beyond side 1, or none.
+    static Index sibling(const Leaf& t) {
+        constexpr std::array<std::uint8_t, 4> side = {1, 2, 1, 0};  // by kind
+        return t.beyond[side[static_cast<std::size_t>(t.kind)]];
+    }
+    [[gnu::always_inline]] void prefetch_beyond_sibling(const Leaf& leaf) const {
+        if (leaf.kind == LeafKind::complete) return;
+        const Index outer = leaves_[sibling(leaf)].beyond[1];
+        if (outer != none) prefetch_leaf(outer);
+    }
     Index insert_vertex(Index a, Index b);
     double median(const Leaf& t, Index v) const;
     bool halve(Index slot, Index other, Index v, Index name, Index beyond_av, Index beyond_vb);

@@ -79,9 +79,10 @@ class LengthQueue {
             for (const std::size_t end = std::min(next_ + distance, sorted_.size()); done < end; ++done)
                 fetch(sorted_[done].leaf);
         };
-        ahead(fetched_[0], 24, [&](Index t) { mesh_.prefetch_leaf(t); });
-        ahead(fetched_[1], 16, [&](Index t) { mesh_.prefetch_around(t); });
-        ahead(fetched_[2], 8, [&](Index t) { mesh_.prefetch_beyond(t); });
+        ahead(fetched_[0], 32, [&](Index t) { mesh_.prefetch_leaf(t); });
+        ahead(fetched_[1], 24, [&](Index t) { mesh_.prefetch_around(t); });
+        ahead(fetched_[2], 16, [&](Index t) { mesh_.prefetch_beyond(t); });
+        ahead(fetched_[3], 8, [&](Index t) { mesh_.prefetch_flip_beyond(t); });
     }
 
     // Sorts the next bucket in which anything is left.
@@ -134,7 +135,7 @@ class LengthQueue {
     std::size_t current_;                      ///< bucket that is sorted; their number before the first
     std::vector<Entry> unsorted_, sorted_;     ///< of that bucket, the longest first
     std::size_t next_ = 0;
-    std::array<std::size_t, 3> fetched_{};  ///< leaves of the sorted ones for which each prefetch was done
+    std::array<std::size_t, 4> fetched_{};  ///< leaves of the sorted ones for which each prefetch was done
     std::vector<Entry> late_;               ///< a heap: those that came when their bucket was sorted already
 };
 

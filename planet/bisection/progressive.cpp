@@ -9,13 +9,20 @@ namespace planet {
 
 using Index = Progressive::Index;
 
+namespace {
+
+// Corners of the four children among those of their Split.
+constexpr std::array<std::array<std::uint8_t, 3>, 4> child_corners = {{{0, 4, 2}, {4, 1, 2}, {1, 4, 3}, {4, 0, 3}}};
+
+}  // namespace
+
 Progressive::Progressive(PlainMesh base, BisectionRule rule, SideGeometry sides)
     : base_(std::move(base)),
       base_vertices_(static_cast<Index>(base_.vertices.size())),
       rule_(rule),
       sides_(sides),
       places_(base_.vertices.begin(), base_.vertices.end()),
-      splitter_(base_.triangles.size(), none) {}
+      base_splitter_(base_.triangles.size(), none) {}
 
 void Progressive::set_note(std::string note) {
     if (note.size() > max_note)
@@ -27,130 +34,116 @@ void Progressive::set_note(std::string note) {
 void Progressive::reserve(std::size_t splits) {
     places_.reserve(base_vertices_ + splits);
     splits_.reserve(splits);
-    splitter_.reserve(base_.triangles.size() + 4 * splits);
 }
 
-std::array<Index, 3> Progressive::corners_of_child(Index vertex, int child) const {
-    const Split& s = splits_[vertex - base_vertices_];
-    const bool pair = child >= 2;
-    const Index from = pair ? s.b : s.a, to = pair ? s.a : s.b, across = pair ? s.d : s.c;
-    return child % 2 == 0 ? std::array{from, vertex, across} : std::array{vertex, to, across};
+std::array<Index, 3> Progressive::corners_of_child(Index vertex, Index child) const {
+    const auto& corner = split_of(vertex).corner;
+    const auto& at = child_corners[child];
+    return {corner[at[0]], corner[at[1]], corner[at[2]]};
 }
 
-// std::nullopt for a side that no triangle has, or whose triangle is split already.
-std::optional<Progressive::Parent> Progressive::parent(Index side) const {
+// Without branches on which side of which child it is, which would be guessed wrong every other time.
+Progressive::Parent Progressive::parent(Index side) {
     constexpr std::array<std::uint8_t, 5> turn = {0, 1, 2, 0, 1};
-    const Index name = side / 3, k = side % 3, roots = static_cast<Index>(base_.triangles.size());
-    if (name >= splitter_.size() || splitter_[name] != none) return std::nullopt;
-    if (name < roots) {
+    const Index name = side / 3, k = side % 3;
+    const auto unless_split = [](Index& splitter) { return splitter == none ? &splitter : nullptr; };
+    if (name < roots()) {
         const auto& c = base_.triangles[name];
-        return Parent{c[k], c[turn[k + 1]], c[turn[k + 2]], false, -1};
+        return {c[k], c[turn[k + 1]], c[turn[k + 2]], complete, 0, unless_split(base_splitter_[name])};
     }
-    const Index maker = base_vertices_ + (name - roots) / 4;
-    const int child = static_cast<int>((name - roots) & 3), pair = child / 2;
-    const Split& s = splits_[maker - base_vertices_];
-    const Index apex = pair == 0 ? s.c : s.d;
-    if (apex == none) return std::nullopt;
-    const auto c = corners_of_child(maker, child);
-    Parent p{c[k], c[turn[k + 1]], c[turn[k + 2]], (s.flags & quarter_bits(pair, child % 2)) != 0, -1};
-    const unsigned four = pair == 0 ? SplitRecord::first_becomes_four : SplitRecord::second_becomes_four;
-    if ((s.flags & four) != 0) {  // a half: only its side opposite to C' can be split, and the child at C is a quarter
-        if (p.c != maker) return std::nullopt;
-        p.quarter_child = p.a == apex ? 0 : 1;
-    } else if (p.quarter && p.c != maker) {  // only C'C
-        return std::nullopt;
-    }
-    return p;
+    const Index i = (name - roots()) / 4, child = (name - roots()) % 4, odd = child % 2;
+    if (i >= splits_.size()) return {};
+    Split& s = splits_[i];
+    const auto& at = child_corners[child];
+    const auto kind = static_cast<Kind>(s.kinds >> 2 * child & 3);
+    const bool opposite = k == 2 - odd;  // to the vertex that made it
+    Index* const splitter =
+        (kind == complete) | ((kind != absent) & opposite) ? unless_split(s.splitter[child]) : nullptr;
+    return {s.corner[at[k]], s.corner[at[turn[k + 1]]], s.corner[at[turn[k + 2]]], kind, odd, splitter};
 }
 
-bool Progressive::append(const SplitRecord& record, const glm::dvec3* place) {
-    const auto first = parent(record.first);
-    if (!first || (record.flags & ~record_bits) != 0) return false;
-    const bool inner = record.second != SplitRecord::no_side;
-    const auto second = inner ? parent(record.second) : std::nullopt;
-    if (inner && (!second || record.first / 3 == record.second / 3 || second->a != first->b || second->b != first->a))
-        return false;
+bool Progressive::link(const SplitRecord& record) {
+    // Kinds of a parent's children, by its own, whether it is a second child, and whether it becomes four.
+    constexpr unsigned two_halves = half_of_four | half_of_four << 2, neither = 256;
+    constexpr unsigned pair_kinds[4][2][2] = {{{0, two_halves}, {0, two_halves}},
+                                              {{quarter, neither}, {quarter << 2, neither}},
+                                              {{0, two_halves}, {0, two_halves}},
+                                              {{absent | absent << 2, neither}, {neither, neither}}};
+    Index none_beyond = none;
+    const Parent first = parent(record.first);
+    const Parent second = record.second != SplitRecord::no_side
+                              ? parent(record.second)
+                              : Parent{first.b, first.a, none, absent, 0, &none_beyond};
     const bool flipped = (record.flags & SplitRecord::over_flip) != 0;
-    if (first->quarter != flipped || (inner ? second->quarter != flipped : flipped)) return false;
-    Split s{first->a, first->b, first->c, inner ? second->c : none, record.first, record.second, record.flags};
-    if (flipped) s = {s.d, s.c, s.a, s.b, s.first, s.second, s.flags};
-    const auto mark_quarter = [&](const Parent& p, int pair, unsigned four) {
-        if (p.quarter_child < 0) return true;
-        s.flags |= static_cast<std::uint8_t>(quarter_bits(pair, p.quarter_child));
-        return (record.flags & four) == 0;
-    };
-    if (!mark_quarter(*first, 0, SplitRecord::first_becomes_four)) return false;
-    if (inner ? !mark_quarter(*second, 1, SplitRecord::second_becomes_four)
-              : (record.flags & SplitRecord::second_becomes_four) != 0)
-        return false;
+    const unsigned kinds = pair_kinds[first.kind][first.odd][(record.flags & SplitRecord::first_becomes_four) != 0] |
+                           pair_kinds[second.kind][second.odd][(record.flags & SplitRecord::second_becomes_four) != 0]
+                               << 4;
+    const bool shared = (first.a == second.b) & (first.b == second.a) & (first.splitter != second.splitter);
+    const bool alike = ((first.kind == quarter) == flipped) & ((second.kind == quarter) == flipped);
+    const bool known = (record.flags & ~record_bits) == 0;
+    if (!first.splitter || !second.splitter || !(shared & alike & known) || kinds >= neither) return false;
 
-    const Index v = vertex_count();
-    places_.push_back(place ? *place : midpoint(s.a, s.b));
-    splits_.push_back(s);
-    splitter_[record.first / 3] = v;
-    if (inner) splitter_[record.second / 3] = v;
-    splitter_.resize(splitter_.size() + 4, none);
+    const Index v = base_vertices_ + split_count();
+    *first.splitter = *second.splitter = v;
+    const bool f = flipped;
+    splits_.push_back(
+        {{f ? second.c : first.a, f ? first.c : first.b, f ? first.a : first.c, f ? first.b : second.c, v},
+         {none, none, none, none},
+         record.first,
+         record.second,
+         record.flags,
+         static_cast<std::uint8_t>(kinds)});
     return true;
 }
 
-void Progressive::prefetch_parents(const SplitRecord& record) const {
-    const auto roots = static_cast<Index>(base_.triangles.size());
-    for (const Index side : {record.first, record.second}) {
-        const Index name = side / 3;
-        if (name >= splitter_.size()) continue;
-        __builtin_prefetch(&splitter_[name]);
-        if (name >= roots) __builtin_prefetch(&splits_[(name - roots) / 4]);
+std::size_t Progressive::link(std::span<const SplitRecord> records) {
+    constexpr std::size_t ahead = 16;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const SplitRecord& later = records[std::min(i + ahead, records.size() - 1)];
+        for (const Index name : {later.first / 3, later.second / 3})
+            if (name >= roots() && name < name_count()) __builtin_prefetch(&splits_[(name - roots()) / 4]);
+        if (!link(records[i])) return i;
     }
+    return records.size();
 }
 
-void Progressive::prefetch_ends(const SplitRecord& record) const {
-    const auto roots = static_cast<Index>(base_.triangles.size());
-    const Index name = record.first / 3;
-    if (name < roots || name >= splitter_.size()) return;
-    const Split& s = splits_[(name - roots) / 4];
-    for (const Index v : {s.a, s.b, s.c, s.d})
-        if (v != none) {
-            __builtin_prefetch(&places_[v].x);
-            __builtin_prefetch(&places_[v].z);
-        }
+bool Progressive::append(const SplitRecord& record, const glm::dvec3* place) {
+    return append(std::span(&record, 1), [&](const glm::dvec3& midpoint) { return place ? *place : midpoint; });
 }
 
 SplitSide Progressive::ends(Index vertex) const {
     if (vertex < base_vertices_) return {vertex, vertex};
-    return {splits_[vertex - base_vertices_].a, splits_[vertex - base_vertices_].b};
+    return {split_of(vertex).corner[0], split_of(vertex).corner[1]};
 }
 
 std::array<Index, 2> Progressive::dependencies(Index vertex) const {
     if (vertex < base_vertices_) return {none, none};
-    const Split& s = splits_[vertex - base_vertices_];
-    const auto roots = static_cast<Index>(base_.triangles.size());
+    const Split& s = split_of(vertex);
     const auto maker = [&](Index side) {
-        return side == SplitRecord::no_side || side / 3 < roots ? none : base_vertices_ + (side / 3 - roots) / 4;
+        return side == SplitRecord::no_side || side / 3 < roots() ? none : base_vertices_ + (side / 3 - roots()) / 4;
     };
     return {maker(s.first), maker(s.second)};
 }
 
 std::array<Index, 4> Progressive::dependents(Index vertex) const {
     if (vertex < base_vertices_) return {none, none, none, none};
-    const std::size_t name = base_.triangles.size() + 4 * std::size_t{vertex - base_vertices_};
-    return {splitter_[name], splitter_[name + 1], splitter_[name + 2], splitter_[name + 3]};
+    return split_of(vertex).splitter;
 }
 
 std::array<Progressive::Child, 2> Progressive::halves(Index name) const {
-    const Index v = splitter_[name], i = v - base_vertices_;
-    const int pair = splits_[i].first / 3 == name ? 0 : 1;
-    const Index child = static_cast<Index>(base_.triangles.size()) + 4 * i + 2 * static_cast<Index>(pair);
-    return {{{child, corners_of_child(v, 2 * pair)}, {child + 1, corners_of_child(v, 2 * pair + 1)}}};
+    const Index v = splitter(name), first = split_of(v).first / 3 == name ? 0 : 2;
+    const Index child = roots() + 4 * (v - base_vertices_) + first;
+    return {{{child, corners_of_child(v, first)}, {child + 1, corners_of_child(v, first + 1)}}};
 }
 
 bool Progressive::becomes_four(Index name) const {
-    const Split& s = splits_[splitter_[name] - base_vertices_];
+    const Split& s = split_of(splitter(name));
     return (s.flags & (s.first / 3 == name ? SplitRecord::first_becomes_four : SplitRecord::second_becomes_four)) != 0;
 }
 
 std::array<Progressive::Child, 4> Progressive::four(Index name) const {
     const auto half = halves(name);
-    const Index c1 = splitter_[name], b1 = splitter_[half[0].name], a1 = splitter_[half[1].name];
+    const Index c1 = splitter(name), b1 = splitter(half[0].name), a1 = splitter(half[1].name);
     const Index c = half[0].corners[2];
     auto at_a = halves(half[0].name), at_b = halves(half[1].name);
     // Of each half, the quarter is the child with C.

@@ -17,6 +17,7 @@
 // as one that becomes four, the quarters C'CB' and C'CA' lose C'C to A'B' as soon as both are there: the names then stand for
 // the two triangles at A'B'. The middle of A'B' is that of C'C: one vertex, whose parents bear these two names.
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -56,11 +57,10 @@ class Progressive {
     /// The vertex that a record makes. @param place or, if not given, the midpoint
     /// @return false, and nothing changes, for a record that does not fit those before it
     bool append(const SplitRecord& record, const glm::dvec3* place = nullptr);
-    /// Fetch into the cache what a record will need, some records ahead: first its parents, then the ends of its side.
-    void prefetch_parents(const SplitRecord& record) const;
-    void prefetch_ends(const SplitRecord& record) const;
-    /// Puts the vertex of the last record where it belongs.
-    void move_last(const glm::dvec3& place) { places_.back() = place; }
+    /// The vertices that records make, quicker than one by one. @param place gives each its place by the
+    /// midpoint of the ends of its side. @return false for a record that does not fit; those before it have been appended
+    template <class Place>
+    bool append(std::span<const SplitRecord> records, Place&& place);
     void reserve(std::size_t splits);
 
     const PlainMesh& base() const { return base_; }
@@ -75,7 +75,7 @@ class Progressive {
     Index vertex_count() const { return static_cast<Index>(places_.size()); }
     Index split_count() const { return static_cast<Index>(splits_.size()); }
     /// All triangles that any selection can have.
-    Index name_count() const { return static_cast<Index>(splitter_.size()); }
+    Index name_count() const { return roots() + 4 * split_count(); }
 
     std::span<const glm::dvec3> places() const { return places_; }
     glm::dvec3 place(Index vertex) const { return places_[vertex]; }
@@ -88,7 +88,9 @@ class Progressive {
     std::array<Index, 2> dependencies(Index vertex) const;
     /// Vertices that need it, or none; a vertex may be there twice.
     std::array<Index, 4> dependents(Index vertex) const;
-    SplitRecord record(Index split) const { return {splits_[split].first, splits_[split].second, record_flags(split)}; }
+    SplitRecord record(Index split) const {
+        return {splits_[split].first, splits_[split].second, splits_[split].flags};
+    }
 
     /// The mesh of the base and the first records. @param splits 0 .. split_count()
     PlainMesh prefix(Index splits) const;
@@ -100,7 +102,9 @@ class Progressive {
         std::array<Index, 3> corners;
     };
     /// The vertex that splits a triangle, or none.
-    Index splitter(Index name) const { return splitter_[name]; }
+    Index splitter(Index name) const {
+        return name < roots() ? base_splitter_[name] : splits_[(name - roots()) / 4].splitter[(name - roots()) % 4];
+    }
     /// The halves of a triangle that has a splitter.
     std::array<Child, 2> halves(Index name) const;
     /// Whether a triangle that has a splitter becomes four once both halves are split.
@@ -110,37 +114,61 @@ class Progressive {
     std::array<Index, 3> base_corners(Index name) const { return base_.triangles[name]; }
 
   private:
-    // A vertex of the refinement: the side ab, the corners across it, its parents' sides (SplitRecord).
-    struct Split {
-        Index a, b, c, d, first, second;
-        std::uint8_t flags;
+    // What a child is: its quarters, and which of its sides can be split, follow. Two bits in Split::kinds.
+    enum Kind : std::uint8_t {
+        complete,
+        half_of_four,  ///< split opposite to C' only; its child at C is a quarter
+        quarter,       ///< at C'C, which is all of it that can be split
+        absent,        ///< there is no second parent
     };
-    // Flags beyond those of a SplitRecord: which child of the first parent, and of the second, is a quarter.
-    static constexpr unsigned quarter_bits(int pair, int child) { return 8u << (2 * pair + child); }
-    static constexpr unsigned record_bits = 7;
-
+    // A vertex of the refinement with all that later records ask of it, in one line of the cache.
+    struct alignas(64) Split {
+        std::array<Index, 5> corner;    ///< a, b of the side, c and d across it, the vertex itself
+        std::array<Index, 4> splitter;  ///< of its children, or none
+        Index first, second;            ///< its parents' sides (SplitRecord)
+        std::uint8_t flags;             ///< of its SplitRecord
+        std::uint8_t kinds;             ///< of its children, the first one's lowest
+    };
     // A side of a triangle, from a to b, the corner across it, and what the triangle is.
     struct Parent {
         Index a, b, c;
-        bool quarter;
-        int quarter_child;  ///< of a half: which child is a quarter; else -1
+        Kind kind;
+        unsigned odd;     ///< whether it is the second child of its own parent
+        Index* splitter;  ///< nullptr for a side that no triangle has, or that cannot be split
     };
 
-    std::uint8_t record_flags(Index split) const {
-        return static_cast<std::uint8_t>(splits_[split].flags & record_bits);
-    }
-    std::optional<Parent> parent(Index side) const;
-    std::array<Index, 3> corners_of_child(Index vertex, int child) const;
+    Index roots() const { return static_cast<Index>(base_.triangles.size()); }
+    const Split& split_of(Index vertex) const { return splits_[vertex - base_vertices_]; }
+    Parent parent(Index side);
+    bool link(const SplitRecord& record);
+    std::size_t link(std::span<const SplitRecord> records);
+    std::array<Index, 3> corners_of_child(Index vertex, Index child) const;
+    static constexpr unsigned record_bits = 7;
 
     PlainMesh base_;
     Index base_vertices_;
     BisectionRule rule_;
     SideGeometry sides_;
     std::string note_;
-    LargeArray<glm::dvec3> places_;  ///< by vertex
-    LargeArray<Split> splits_;       ///< by vertex of the refinement
-    LargeArray<Index> splitter_;     ///< by name
+    LargeArray<glm::dvec3> places_;     ///< by vertex
+    LargeArray<Split> splits_;          ///< by vertex of the refinement
+    std::vector<Index> base_splitter_;  ///< by base triangle
 };
+
+template <class Place>
+bool Progressive::append(std::span<const SplitRecord> records, Place&& place) {
+    constexpr std::size_t ahead = 16;  // vertices, in which time memory answers
+    const std::size_t linked = link(records), end = splits_.size();
+    for (std::size_t i = end - linked; i < end; ++i) {
+        const auto& next = splits_[std::min(i + ahead, end - 1)].corner;
+        for (const Index v : {next[0], next[1]}) {
+            __builtin_prefetch(&places_[v].x);
+            __builtin_prefetch(&places_[v].z);
+        }
+        places_.push_back(place(midpoint(splits_[i].corner[0], splits_[i].corner[1])));
+    }
+    return linked == records.size();
+}
 
 /// A conforming mesh between the base and the whole: a set of vertices closed under dependencies.
 class Selection {

@@ -290,12 +290,13 @@ class Decoder {
         }
         ByteReader places(payload.subspan((bits.bits_taken() + 7) / 8));
         const Index stop = std::min(count, wanted - begin);
-        for (Index i = 0; i < stop; ++i) {
-            if (i + 16 < stop) mesh.prefetch_parents(records[i + 16]);
-            if (i + 8 < stop) mesh.prefetch_ends(records[i + 8]);
-            if (!mesh.append(records[i])) damaged(" do not fit each other");
-            if (header_.places != Places::midpoints) mesh.move_last(place(mesh.places().back(), places));
-        }
+        const auto placed = [&](const glm::dvec3& midpoint) {
+            return header_.places == Places::midpoints ? midpoint : place(midpoint, places);
+        };
+        constexpr Index step = 1024;  // whose splits stay in the cache until they are placed
+        for (Index i = 0; i < stop; i += step)
+            if (!mesh.append(std::span(records).subspan(i, std::min(step, stop - i)), placed))
+                damaged(" do not fit each other");
         if (stop == count && !places.at_end()) damaged(" are too long");
     }
     glm::dvec3 place(glm::dvec3 p, ByteReader& in) const {

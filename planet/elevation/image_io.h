@@ -1,6 +1,7 @@
 #pragma once
 // Reading and writing pictures through OpenImageIO, which is in a module of its own (module.h).
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -44,6 +45,9 @@ class ImageWriter {
 
     /// The next rows, samples of the type given, interleaved, tightly packed. Throws Error if they cannot be written.
     void write_rows(const void* rows, int count);
+    /// The name of the temporary file.
+    const std::filesystem::path& temporary() const;
+
     /// After the last row: the file is there. Throws Error if it cannot be.
     void finish();
 

@@ -96,6 +96,10 @@ void ImageWriter::write_rows(const void* rows, int count) {
     state_->rows_left -= count;
 }
 
+const std::filesystem::path& ImageWriter::temporary() const {
+    return state_->temporary;
+}
+
 void ImageWriter::finish() {
     assert(state_->rows_left == 0);
     state_->sink->close();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
 #include <mutex>
 
 #include "planet/error.h"
@@ -23,7 +24,8 @@ using Index = Delaunay::Index;
 constexpr int start_spacing = 64;
 
 // The vertices of a straight line of samples between two corners of a tile.
-std::vector<glm::ivec2> border_vertices(const HeightGrid& grid, glm::ivec2 from, glm::ivec2 to, double tolerance) {
+std::vector<glm::ivec2> border_vertices(const HeightGrid& grid, glm::ivec2 from, glm::ivec2 to, double tolerance,
+                                        const std::vector<glm::ivec2>& needed) {
     const glm::ivec2 step = glm::sign(to - from);
     const int n = std::max(to.x - from.x, to.y - from.y) + 1;
     std::vector<float> line(static_cast<std::size_t>(n));
@@ -33,6 +35,8 @@ std::vector<glm::ivec2> border_vertices(const HeightGrid& grid, glm::ivec2 from,
         line[static_cast<std::size_t>(i)] = grid.at(p);
         if (grid.has_void() && on_void_border(grid, p)) keep.push_back(i);
     }
+    for (const glm::ivec2 p : needed)
+        if (glm::min(p, from) == from && glm::max(p, to) == to) keep.push_back(p.x - from.x + p.y - from.y);
     std::vector<glm::ivec2> vertices;
     for (const int i : simplified_line(line, tolerance, keep)) vertices.push_back(from + i * step);
     return vertices;
@@ -40,13 +44,22 @@ std::vector<glm::ivec2> border_vertices(const HeightGrid& grid, glm::ivec2 from,
 
 class TileWork {
   public:
-    TileWork(const HeightGrid& around, glm::ivec2 low, glm::ivec2 high, const TiledTinOptions& options)
-        : around_(around), low_(low), heights_(around, low, high), options_(options), mesh_({0, 0}, high - low) {}
+    TileWork(const HeightGrid& around, glm::ivec2 low, glm::ivec2 high, const TiledTinOptions& options,
+             const TinTileNeeds& needs)
+        : around_(around),
+          low_(low),
+          heights_(around, low, high),
+          options_(options),
+          needs_(needs),
+          mesh_({0, 0}, high - low) {}
 
     TinTile run(glm::ivec2 offset) {
         mesh_.reserve(heights_.count() / 8);
-        insert_borders();
+        TinTile out;
         for (const glm::ivec2 p : void_border(heights_, {0, 0}, last())) mesh_.insert(p);
+        if (!needs_.features.empty()) out.features = insert_features(mesh_, heights_, moved(needs_.features, -low_));
+        for (const glm::ivec2 p : tile_border(around_, low_, low_ + last(), options_.tolerance, needs_.border))
+            mesh_.insert(p - low_);
         const std::size_t required = mesh_.vertex_slots();
         if (deserves_start_grid()) insert_start_grid();
         const bool prunes = options_.quality != TinQuality::fast;
@@ -55,7 +68,6 @@ class TileWork {
             const int passes = options_.quality == TinQuality::best ? 8 : 1;
             prune(mesh_, heights_, {options_.tolerance, passes, std::vector<std::uint8_t>(required, 1)});
         }
-        TinTile out;
         out.mesh = triangles_over_samples(mesh_, heights_, offset + low_);
         list_border(out, offset + low_);
         return out;
@@ -63,15 +75,6 @@ class TileWork {
 
   private:
     glm::ivec2 last() const { return {heights_.width() - 1, heights_.height() - 1}; }
-
-    void insert_borders() {
-        const glm::ivec2 high = low_ + last();
-        for (const auto& [from, to] : {std::pair{low_, glm::ivec2(high.x, low_.y)},
-                                       {{low_.x, high.y}, high},
-                                       {low_, {low_.x, high.y}},
-                                       {{high.x, low_.y}, high}})
-            for (const glm::ivec2 p : border_vertices(around_, from, to, options_.tolerance)) mesh_.insert(p - low_);
-    }
 
     // Not where the terrain is so even that the grid would be most of the mesh: where most of its cells keep the
     // tolerance.
@@ -113,6 +116,7 @@ class TileWork {
     const glm::ivec2 low_;
     const HeightGrid heights_;
     const TiledTinOptions& options_;
+    const TinTileNeeds& needs_;
     Delaunay mesh_;
 };
 
@@ -140,9 +144,31 @@ glm::ivec2 TinTiling::high(std::size_t tile) const {
     return glm::min(low(tile) + step_, glm::ivec2(width_ - 1, height_ - 1));
 }
 
+std::vector<std::size_t> TinTiling::tiles_at(glm::ivec2 sample) const {
+    std::vector<std::size_t> tiles;
+    const glm::ivec2 first = glm::max(sample - 1, 0) / step_,
+                     last = glm::min(sample / step_, {columns_ - 1, rows_ - 1});
+    for (int row = first.y; row <= last.y; ++row)
+        for (int column = first.x; column <= last.x; ++column)
+            tiles.push_back(static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                            static_cast<std::size_t>(column));
+    return tiles;
+}
+
 TinTile tin_tile(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, const TiledTinOptions& options,
-                 glm::ivec2 offset) {
-    return TileWork(grid, low, high, options).run(offset);
+                 glm::ivec2 offset, const TinTileNeeds& needs) {
+    return TileWork(grid, low, high, options, needs).run(offset);
+}
+
+std::vector<glm::ivec2> tile_border(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, double tolerance,
+                                    const std::vector<glm::ivec2>& needed) {
+    std::vector<glm::ivec2> vertices;
+    for (const auto& [from, to] : {std::pair{low, glm::ivec2(high.x, low.y)},
+                                   {{low.x, high.y}, high},
+                                   {low, {low.x, high.y}},
+                                   {{high.x, low.y}, high}})
+        std::ranges::move(border_vertices(grid, from, to, tolerance, needed), std::back_inserter(vertices));
+    return vertices;
 }
 
 void tin_tiles(const TinTiling& tiling, const WindowReader& read, const TiledTinOptions& options,

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "planet/tin/height_grid.h"
+#include "planet/tin/tin_features.h"
 #include "planet/tin/tin_mesh.h"
 
 namespace planet {
@@ -24,6 +25,9 @@ class TinTiling {
     /// First and last sample of a tile. @param tile row * columns() + column
     glm::ivec2 low(std::size_t tile) const;
     glm::ivec2 high(std::size_t tile) const;
+    /// Those that have a sample: up to four, ascending.
+    std::vector<std::size_t> tiles_at(glm::ivec2 sample) const;
+    int step() const { return step_; }
     int width() const { return width_; }
     int height() const { return height_; }
 
@@ -43,6 +47,12 @@ struct TiledTinOptions {
     unsigned threads = 0;  ///< 0: one a processor. The same bits whatever the number.
 };
 
+/// What a tile has to have besides what its heights call for.
+struct TinTileNeeds {
+    std::vector<glm::ivec2> border;  ///< samples on its border: a neighbour has them, too. May be void
+    TinFeatures features = {};       ///< within it (cut_into_tiles())
+};
+
 /// A tile's part of the whole.
 struct TinTile {
     std::size_t tile = 0;
@@ -51,6 +61,7 @@ struct TinTile {
     /// Vertices on the low and high row, and on the low and high column, ascending: those of the mesh, by index. Of two
     /// neighbours one may have fewer, where all that the other has there is beside a void.
     std::array<std::vector<std::uint32_t>, 4> border;
+    FeatureReport features = {};
 };
 
 /// The window of a raster from `low` to `high`, both included. Called from several threads.
@@ -61,10 +72,17 @@ using WindowReader = std::function<HeightGrid(glm::ivec2 low, glm::ivec2 high)>;
 void tin_tiles(const TinTiling& tiling, const WindowReader& read, const TiledTinOptions& options,
                const std::function<void(TinTile&&)>& sink);
 
-/// The tile of a grid that holds at least it and the samples around it.
-/// @param low, high of the tile in the grid @param offset of the grid in the raster
+/// The tile of a grid that holds at least it and the samples around it. Features may add vertices to its border that
+/// tile_border() does not tell: where two cross there, or lead around a void. Its neighbours must be told.
+/// @param low, high of the tile in the grid @param offset of the grid in the raster @param needs in samples of the grid
 TinTile tin_tile(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, const TiledTinOptions& options,
-                 glm::ivec2 offset = {0, 0});
+                 glm::ivec2 offset = {0, 0}, const TinTileNeeds& needs = {});
+
+/// The vertices on a tile's border, as its neighbours have them: side by side, corners in two of them.
+/// @param grid, low, high as for tin_tile() @param tolerance metres @param needed samples on the border that have to be
+/// among them
+std::vector<glm::ivec2> tile_border(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, double tolerance,
+                                    const std::vector<glm::ivec2>& needed = {});
 
 /// Samples a tile that keep its work in the processor's cache.
 inline constexpr int tiled_tin_step = 256;

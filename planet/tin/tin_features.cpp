@@ -190,6 +190,24 @@ std::vector<double> crossings_of_row(const std::vector<std::vector<glm::dvec2>>&
 
 }  // namespace
 
+TinFeatures moved(TinFeatures features, glm::ivec2 by) {
+    for (glm::ivec2& p : features.points) p += by;
+    for (auto& line : features.lines)
+        for (glm::ivec2& p : line) p += by;
+    return features;
+}
+
+FeatureReport& FeatureReport::operator+=(const FeatureReport& other) {
+    points += other.points;
+    line_sides += other.line_sides;
+    duplicates += other.duplicates;
+    over_voids += other.over_voids;
+    around_voids += other.around_voids;
+    crossings += other.crossings;
+    dropped += other.dropped;
+    return *this;
+}
+
 TinFeatures features_at_samples(const Features& features, const Raster& raster) {
     const SamplePlaces places(raster);
     TinFeatures out;

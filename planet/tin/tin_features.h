@@ -19,6 +19,9 @@ struct TinFeatures {
     bool empty() const { return points.empty() && lines.empty(); }
 };
 
+/// Every sample so many columns and rows on.
+TinFeatures moved(TinFeatures features, glm::ivec2 by);
+
 /// Every vertex at the sample nearest to it. Lines are cut at the border of the raster; the outlines of polygons are
 /// lines.
 /// @param features in the coordinates of the raster's grid @param raster whose samples are not looked at
@@ -34,6 +37,8 @@ struct FeatureReport {
         0;  ///< straight parts that meet a void: laid from sample to sample where there are valid ones
     std::size_t crossings = 0;  ///< of lines: both go through the sample nearest to the crossing
     std::size_t dropped = 0;    ///< parts of lines for which no way was found
+
+    FeatureReport& operator+=(const FeatureReport& other);
 };
 
 /// Points become vertices, lines constrained sides. @param mesh of the whole grid, with void_border() as vertices

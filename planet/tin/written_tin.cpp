@@ -85,32 +85,59 @@ class TriangleSamples {
     TriangleSamples(const HeightGrid& grid, const RasterFrame& frame)
         : grid_(grid), frame_(frame), affine_grid_(frame.grid()), metre_(1 / frame.exaggeration()) {}
 
+    // The corners last, which are valid in every TIN.
     void collect(const std::array<glm::ivec2, 3>& c) {
         samples_.clear();
-        const auto add = [this](glm::ivec2 p) {
-            if (grid_.valid(p)) samples_.push_back(p);
-        };
         for_each_span(SortedTriangle(c, {0, 0, 0}), [&](int y, int first, int last) {
-            for (int x = first; x <= last; ++x)
-                if (glm::ivec2(x, y) != c[0] && glm::ivec2(x, y) != c[1] && glm::ivec2(x, y) != c[2]) add({x, y});
+            for (int x = first; x <= last; ++x) {
+                const glm::ivec2 p(x, y);
+                if (p != c[0] && p != c[1] && p != c[2] && grid_.valid(p)) samples_.push_back(p);
+            }
             return true;
         });
-        for (const glm::ivec2 corner : c) add(corner);
+        samples_.insert(samples_.end(), c.begin(), c.end());
     }
 
-    void measure(const std::array<glm::dvec3, 3>& p, glm::ivec2 corner) {
+    void measure(const std::array<glm::dvec3, 3>& p, const std::array<glm::ivec2, 3>& c) {
         distances_.resize(samples_.size());
         const glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
-        if (frame_.affine())
-            measure_affine(p[0], n, corner);
-        else
+        if (!frame_.affine())
             measure_placed(p, n);
+        else if (lie_at_samples(p, c))
+            measure_in_lattice(c);
+        else
+            measure_affine(p[0], n, c[0]);
     }
 
     std::span<const glm::ivec2> samples() const { return samples_; }
     std::span<const double> distances() const { return distances_; }
 
   private:
+    bool lie_at_samples(const std::array<glm::dvec3, 3>& p, const std::array<glm::ivec2, 3>& c) const {
+        const std::array at{glm::dvec2(c[0]), glm::dvec2(c[1]), glm::dvec2(c[2])};
+        std::array<double, 3> heights{};
+        std::array<glm::dvec3, 3> unrounded;
+        for (std::size_t k = 0; k < 3; ++k) heights[k] = static_cast<double>(grid_.at(c[k]));
+        frame_.place(at, heights, unrounded, {});
+        return p == unrounded;
+    }
+
+    // Weights of corners that are whole numbers: of heights in whole metres what is exactly the tolerance is not a
+    // trifle above it, as it is from places in degrees.
+    void measure_in_lattice(const std::array<glm::ivec2, 3>& c) {
+        const auto height = [this](glm::ivec2 p) { return static_cast<double>(grid_.at(p)); };
+        const double area = static_cast<double>(orientation(c[0], c[1], c[2]));
+        const std::array h{height(c[0]), height(c[1]), height(c[2])};
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            const glm::ivec2 p = samples_[i];
+            const double own = height(p);
+            double sum = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                sum += static_cast<double>(orientation(c[(k + 1) % 3], c[(k + 2) % 3], p)) * (h[k] - own);
+            distances_[i] = std::abs(sum) / area;
+        }
+    }
+
     // The plane as a function of column and row.
     void measure_affine(const glm::dvec3& p, const glm::dvec3& n, glm::ivec2 corner) {
         const SampleGrid& g = affine_grid_;
@@ -125,7 +152,8 @@ class TriangleSamples {
         }
     }
 
-    // Along the vertical of each sample; from the nearest corner where the triangle stands upright or has no area.
+    // Along the vertical of each sample; from the nearest corner where the triangle stands upright or has no area. A
+    // corner is measured from where it is written: one that is not rounded is not off at all.
     void measure_placed(const std::array<glm::dvec3, 3>& p, const glm::dvec3& n) {
         const std::size_t count = samples_.size();
         at_.assign(samples_.begin(), samples_.end());
@@ -137,9 +165,10 @@ class TriangleSamples {
         const double least_across = 1e-9 * glm::length(n);
         for (std::size_t i = 0; i < count; ++i) {
             const double across = glm::dot(glm::dvec3(up_[i]), n);
+            const glm::dvec3& on_plane = p[i + 3 < count ? 0 : i + 3 - count];
             distances_[i] =
                 metre_ * (std::abs(across) > least_across
-                              ? std::abs(glm::dot(p[0] - position_[i], n) / across)
+                              ? std::abs(glm::dot(on_plane - position_[i], n) / across)
                               : std::min({glm::distance(position_[i], p[0]), glm::distance(position_[i], p[1]),
                                           glm::distance(position_[i], p[2])}));
         }
@@ -180,7 +209,7 @@ Sum measure_piece(const TinMesh& mesh, std::span<const glm::dvec3> written, cons
         const std::array c{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
         sum.angle = std::min(sum.angle, smallest_angle(p, metres));
         inside.collect(c);
-        inside.measure(p, c[0]);
+        inside.measure(p, c);
         for (std::size_t k = 0; k < inside.samples().size(); ++k) {
             const double d = inside.distances()[k];
             if (d > out.by_triangle[i]) {

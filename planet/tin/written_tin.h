@@ -35,8 +35,9 @@ struct WrittenDeviation {
 };
 
 /// The distance along the vertical of every sample of every triangle, sides included, from the plane through the
-/// vertices as written, in metres of height: divided by the frame's exaggeration. For the rms each sample counts once,
-/// in the first triangle that holds it.
+/// vertices as written, in metres of height: divided by the frame's exaggeration. A triangle whose corners are written
+/// where their samples lie, in a frame that is affine, is measured in the lattice: exactly where heights are whole metres.
+/// For the rms each sample counts once, in the first triangle that holds it.
 /// @param written by vertex, in the frame, rounded as its format rounds
 /// @param threads 0: one a processor. The same bits whatever the number.
 WrittenDeviation measure_written(const TinMesh& mesh, std::span<const glm::dvec3> written, const HeightGrid& grid,

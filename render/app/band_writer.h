@@ -9,6 +9,7 @@
 #include "planet/elevation/image_io.h"
 #include "render/app/render_options.h"
 #include "render/app/steps.h"
+#include "render/app/temporary_names.h"
 
 namespace render {
 
@@ -18,7 +19,8 @@ class BandWriter {
     BandWriter(const RenderOptions& options, Steps& steps)
         : threads_(options.thread_count()),
           steps_(steps),
-          writer_(options.output.string(), options.size.width, options.size.height, 3, planet::SampleType::uint8) {}
+          writer_(options.output.string(), options.drawn().width, options.drawn().height, 3, planet::SampleType::uint8),
+          listed_(writer_.temporary()) {}
 
     /// @param band rows of RGB, top down
     void write(std::vector<std::uint8_t> band, int rows) {
@@ -31,12 +33,14 @@ class BandWriter {
     void finish() {
         if (writing_.valid()) writing_.get();
         steps_.time("write", [&] { writer_.finish(); });
+        listed_ = {};
     }
 
   private:
     unsigned threads_;
     Steps& steps_;
     planet::ImageWriter writer_;
+    TemporaryName listed_;
     std::future<void> writing_;
 };
 

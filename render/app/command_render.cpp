@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include "planet/error.h"
 #include "render/app/picture.h"
 #include "render/app/program.h"
 #include "render/app/progress.h"
@@ -22,6 +23,8 @@ void fill(Report& report, const RenderOptions& options, const PictureReport& pic
     report.set("output", options.output.native());
     report.set("width_pixels", options.size.width);
     report.set("height_pixels", options.size.height);
+    if (const auto& crop = options.crop)
+        report.set("crop_pixels", {{"x", crop->x}, {"y", crop->y}, {"width", crop->width}, {"height", crop->height}});
     report.set("latitude_deg", options.at.latitude / planet::degrees);
     report.set("longitude_deg", options.at.longitude / planet::degrees);
     report.set("eye_height_m", picture.eye_height_m);
@@ -63,6 +66,14 @@ void fill(Report& report, const RenderOptions& options, const PictureReport& pic
     for (const auto& [step, seconds] : picture.seconds) report.add_seconds(step, seconds);
 }
 
+void refuse_crop_outside(const RenderOptions& options) {
+    const PictureCrop crop = options.drawn();
+    const auto [width, height] = options.size;
+    if (crop.x + crop.width <= width && crop.y + crop.height <= height) return;
+    throw planet::Error(planet::Fault::bad_usage, "--crop", "reaches beyond the picture",
+                        "a part of " + std::to_string(width) + "x" + std::to_string(height) + " pixels");
+}
+
 }  // namespace
 
 void add_render(CLI::App& program) {
@@ -76,6 +87,7 @@ void add_render(CLI::App& program) {
     command->final_callback([options, command] {
         RenderOptions& render = options->render;
         if (render.height && command->count("--pitch") == 0) render.pitch = 0;
+        refuse_crop_outside(render);
         Progress progress;
         render.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };
         render.measure_frames = !options->json.empty();

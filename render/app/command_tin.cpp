@@ -148,12 +148,10 @@ void check_files(const TinCommand& o) {
 
 void check_tiles(const TinCommand& o) {
     require(o.output.has_value(), "--tile", "without a folder", "-o FOLDER");
-    require(o.max_deviation.has_value(), "--tile", "without a bound", "--max-deviation");
-    require(!o.max_triangles, "--tile", "goes with no budget", "--max-deviation alone");
-    require(o.features.empty(), "--tile", "goes with no features: they make one mesh", "--features without --tile");
-    require(o.measure.plain(), "--tile", "goes with the local metric only", "--metric local --locate auto");
+    require(o.measure.plain(), "--tile",
+            "goes with the local metric only: others put the samples of the whole raster in one order",
+            "--metric local --locate auto");
     require(!o.picture, "--tile", "goes with no picture of steps, which are of one mesh", "--picture without --tile");
-    require(!o.base, "--tile", "goes with no solid", "--base without --tile");
 }
 
 void check(const TinCommand& o) {

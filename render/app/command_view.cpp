@@ -4,6 +4,8 @@
 #include <memory>
 
 #include "planet/error.h"
+#include "planet/geodesy/ellipsoid.h"
+#include "planet/store/elevation_store.h"
 #include "render/app/program.h"
 #include "render/app/render_options.h"
 #include "render/app/report.h"
@@ -77,6 +79,8 @@ void add_view(CLI::App& program) {
         if (!options->viewer.screenshot.empty()) {
             const OutputFile writable("--screenshot", options->viewer.screenshot);
         }
+        // A store that cannot be read is refused before a window opens.
+        if (render.store) planet::ElevationStore::open(*render.store, planet::wgs84);
         const ViewerReport view = view_globe(options->viewer);
         for (const auto& line : view.damage)
             std::cerr << "octaglobe: warning: " << line << "; a coarser one stands in for it\n";

@@ -50,9 +50,15 @@ double DrawnSurface::occluder_radius() const {
     return store->metadata().ellipsoid.b + lowest - deepest_geoid_m;
 }
 
-double DrawnSurface::ground(const glm::dvec3& normal) const {
+double DrawnSurface::ground(const glm::dvec3& normal, double exaggerated) const {
     const double undulation = geoid ? geoid->undulation(normal).m : 0;
-    return static_cast<double>(field.height(normal)) * exaggeration + undulation;
+    return static_cast<double>(field.height(normal)) * exaggerated + undulation;
+}
+
+glm::dvec3 DrawnSurface::above_ground(const glm::dvec3& eye, double exaggerated, double clearance_m) const {
+    const planet::NormalPosition p = planet::position_from_ecef(wgs84, eye);
+    const double floor = ground(p.normal, exaggerated) + clearance_m;
+    return p.h.m < floor ? planet::ecef_from_normal(wgs84, p.normal, {floor}) : eye;
 }
 
 Camera DrawnSurface::camera(const RenderOptions& o) const {
@@ -65,9 +71,7 @@ Camera DrawnSurface::camera(const RenderOptions& o) const {
         const double range = o.range.value_or(whole_globe_range(o.fov));
         eye = planet::ecef_from_normal(wgs84, n, {ground_h}) - range * look_direction(n, o.heading, o.pitch);
         // A shallow view can start inside a mountain: the eye then stands on it.
-        const planet::NormalPosition p = planet::position_from_ecef(wgs84, eye);
-        const double floor = ground(p.normal) + std::min(2.0, range);
-        if (p.h.m < floor) eye = planet::ecef_from_normal(wgs84, p.normal, {floor});
+        eye = above_ground(eye, exaggeration, std::min(2.0, range));
     }
     return make_camera(eye, n, o.heading, o.pitch, focal_length_px(o.fov, o.size.width, o.size.height), o.size.width,
                        o.size.height);

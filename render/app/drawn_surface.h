@@ -27,7 +27,11 @@ struct DrawnSurface {
     /// The radius of a ball about the planet's centre below all terrain, m.
     double occluder_radius() const;
     /// The drawn ground at a unit geodetic normal, exaggeration and geoid included: metres above the ellipsoid.
-    double ground(const glm::dvec3& normal) const;
+    double ground(const glm::dvec3& normal) const { return ground(normal, exaggeration); }
+    /// The same were it drawn with another exaggeration.
+    double ground(const glm::dvec3& normal, double exaggerated) const;
+    /// An eye, ecef, or where it is that far above the ground of ground(normal, exaggerated) if it is lower.
+    glm::dvec3 above_ground(const glm::dvec3& eye, double exaggerated, double clearance_m) const;
     /// The camera of a picture: over the ground as it is drawn, exaggeration and geoid included, never below it.
     Camera camera(const RenderOptions& options) const;
 };

@@ -32,7 +32,9 @@ class GlobeLoading {
     /// Gives up at the next step that tells of its progress, and waits for that.
     ~GlobeLoading();
 
-    bool ready() const { return data_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
+    bool ready() const { return wait(std::chrono::milliseconds(0)); }
+    /// Waits for no longer than that until it is.
+    bool wait(std::chrono::milliseconds most) const { return data_.wait_for(most) == std::future_status::ready; }
     /// Once it is ready. Throws what the loading threw.
     GlobeData take() { return data_.get(); }
 

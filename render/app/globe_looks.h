@@ -2,6 +2,7 @@
 // What a globe is drawn with: the cube maps, the ground, the sky, and what shows the mesh. Pictures and the viewer share
 // it, which is why a settled view and the picture of its command line have the same pixels.
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,6 +31,12 @@ class GlobeLooks {
 
     /// Whether a camera can only see ground as coarse as the imagery: such pictures need one sample a pixel.
     bool from_afar(const Camera& camera, double exaggeration) const;
+
+    /// Of a pixel: what the options say, or what the view needs. @param most of the context
+    int samples(const RenderOptions& options, const Camera& camera, int most) const {
+        if (options.samples > 0) return options.samples;
+        return from_afar(camera, options.exaggeration) ? 1 : std::min(4, most);
+    }
 
     struct Frame {
         const Camera& camera;

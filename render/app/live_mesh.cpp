@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "planet/geodesy/sun.h"
@@ -56,7 +57,7 @@ planet::SegmentView LiveMesh::view_of(const Wanted& wanted) const {
     return view;
 }
 
-bool LiveMesh::update(const Wanted& wanted) {
+bool LiveMesh::step(const Wanted& wanted, bool wait) {
     const auto start = std::chrono::steady_clock::now();
     const auto threads = static_cast<int>(options_.thread_count());
     const bool was_at_rest = std::exchange(at_rest_, wanted.at_rest);
@@ -71,6 +72,7 @@ bool LiveMesh::update(const Wanted& wanted) {
     }
     const planet::SegmentView ahead = planet::view_ahead(view_, wanted.velocity_m_s, 0.5);
     const bool moves = wanted.velocity_m_s != glm::dvec3(0);
+    if (wait) segments_.invalidate(tiles_.settle(view_));
     const auto changes = moves ? tiles_.update(view_, &ahead, tiles_a_frame) : tiles_.update(view_);
     segments_.invalidate(changes);
     segments_.update(tiles_, view_, threads);
@@ -96,6 +98,16 @@ bool LiveMesh::update_patches(bool mesh_changed, std::size_t most) {
     return patches_.update(segments_, mesh_changed, most);
 }
 
+void LiveMesh::settle(Wanted wanted) {
+    wanted.at_rest = true;
+    angle_factor_ = 1;
+    update_patches(step(wanted, true), patch_limit);
+    while (patches_.missing() > 0) {
+        patches_.wait();
+        update_patches(false, patch_limit);
+    }
+}
+
 bool LiveMesh::complete() const {
     return at_rest_ && tiles_.residency().pending == 0 && patches_.missing() == 0;
 }
@@ -105,8 +117,10 @@ void LiveMesh::place_anew() {
 }
 
 double LiveMesh::pixel_deviation() const {
-    return std::max(segments_.ratio_max(), tiles_.residency().hidden_ratio) * coarsening_ *
-           options_.max_pixel_deviation;
+    const planet::Residency& r = tiles_.residency();
+    // Where nothing is missing, the split test itself is the bound: what segments know is for an eye that has moved since.
+    const double most = r.pending == 0 && r.damaged == 0 ? 1 : std::numeric_limits<double>::infinity();
+    return std::min(std::max(segments_.ratio_max(), r.hidden_ratio), most) * coarsening_ * options_.max_pixel_deviation;
 }
 
 double LiveMesh::deviation_m() const {

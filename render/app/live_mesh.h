@@ -28,9 +28,13 @@ class LiveMesh {
         std::optional<planet::Culling> culling{};  ///< instead of the camera's: to look at it from outside
     };
     /// One step. Returns whether the mesh has changed.
-    bool update(const Wanted& wanted);
+    bool update(const Wanted& wanted) { return step(wanted, false); }
     /// After update(): whether patches came, or the mesh has changed. Takes time for at most `most` patches.
     bool update_patches(bool mesh_changed, std::size_t most);
+
+    /// The mesh of a picture with its patches, whatever was seen before; waits for all it needs. Of a view that moves on
+    /// (Wanted::velocity_m_s) what comes next is loaded ahead.
+    void settle(Wanted wanted);
 
     /// At rest, with nothing missing: the mesh of a picture.
     bool complete() const;
@@ -50,6 +54,7 @@ class LiveMesh {
     bool exhausted() const { return steps_.step() > 0; }
 
   private:
+    bool step(const Wanted& wanted, bool wait);
     planet::SegmentView view_of(const Wanted& wanted) const;
 
     const RenderOptions& options_;

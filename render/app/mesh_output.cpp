@@ -6,6 +6,8 @@
 
 #include "planet/elevation/image_io.h"
 #include "planet/error.h"
+#include "planet/exporters/reference_text.h"
+#include "render/app/raster_frames.h"
 #include "render/gl/context.h"
 
 namespace render {
@@ -31,7 +33,7 @@ MeshOutput::MeshOutput(const MeshOptions& options) : options_(options) {
 MeshFrame MeshOutput::frame(bool planet) const {
     if (options_.frame) return *options_.frame;
     if (planet) return MeshFrame::ecef;
-    return format_ == MeshFormat::glb || format_ == MeshFormat::stl ? MeshFrame::enu : MeshFrame::source;
+    return usual_frame(format_);
 }
 
 void MeshOutput::write(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference,
@@ -69,16 +71,29 @@ void MeshOutput::commit() {
     if (file_) file_->commit();
 }
 
+void refuse_bound(double asked, double possible, MeshFormat format) {
+    const bool rounds = format == MeshFormat::glb || format == MeshFormat::stl;
+    const std::string ending = format == MeshFormat::glb ? ".glb" : ".stl";
+    const double rounded_up = possible * (1 + 1e-6);  // four_digits() takes less for the rounding of sums
+    throw planet::Error(planet::Fault::bad_usage, "--max-deviation",
+                        four_digits(asked) + " m cannot be kept" +
+                            (rounds ? " in a " + ending + ", which rounds" : ": samples are kept as floats"),
+                        four_digits(rounded_up) + " m or more" + (rounds ? ", or a .ply" : ""));
+}
+
+void report_reference(const planet::MeshReference& reference, Report& report) {
+    report.set("frame", planet::to_string(reference.frame));
+    report.set("crs", reference.crs);
+    report.set("vertical_datum", reference.vertical_datum);
+}
+
 void report_mesh(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference, Report& report) {
-    constexpr std::string_view frames[] = {"source", "utm", "enu", "ecef"};
     report.set("triangles", mesh.triangles.size());
     report.set("vertices", mesh.vertices.size());
     report.set("strip_indices", mesh.strip.size());
     report.set("strips",
                mesh.strip.empty() ? 0 : 1 + std::count(mesh.strip.begin(), mesh.strip.end(), planet::strip_restart));
-    report.set("frame", frames[static_cast<std::size_t>(reference.frame)]);
-    report.set("crs", reference.crs);
-    report.set("vertical_datum", reference.vertical_datum);
+    report_reference(reference, report);
 }
 
 }  // namespace render

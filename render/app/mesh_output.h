@@ -38,7 +38,14 @@ class MeshOutput {
     std::unique_ptr<OutputFile> file_;
 };
 
-/// triangles, vertices, strip_indices, frame, crs, vertical_datum.
+/// Throws planet::Error(bad_usage): a bound that a mesh of all samples does not keep in a file of a format.
+/// @param asked, possible metres
+[[noreturn]] void refuse_bound(double asked, double possible, planet::MeshFormat format);
+
+/// frame, crs, vertical_datum.
+void report_reference(const planet::MeshReference& reference, Report& report);
+
+/// triangles, vertices, strip_indices, strips, and what report_reference() sets.
 void report_mesh(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference, Report& report);
 
 }  // namespace render

@@ -8,9 +8,9 @@
 #include "planet/error.h"
 #include "planet/patches/decimation.h"
 #include "planet/patches/patch_measure.h"
-#include "render/app/data_path.h"
 #include "render/app/mesh_keep.h"
 #include "render/app/mesh_output.h"
+#include "render/app/raster_frames.h"
 
 namespace render {
 namespace {
@@ -32,7 +32,7 @@ class RasterMesher {
           output_(options),
           raster_(read()),
           patches_(*raster_, most_samples),
-          frame_(make_frame()) {
+          frame_(frame_of_raster(raster_, output_.frame(false), datum())) {
         planet::check_frame(frame_.reference(), output_.format());
     }
 
@@ -40,7 +40,7 @@ class RasterMesher {
         if (!options_.keep.empty()) read_features();
         if (!frame_.affine()) {
             const auto step = report_.step("place");
-            check_reach();
+            check_reach(frame_, *raster_);
             at_poles_ = samples_at_poles(*raster_);
             samples_ = planet::place_samples(patches_, frame_);
         }
@@ -61,34 +61,6 @@ class RasterMesher {
     }
 
     planet::VerticalDatum datum() const { return options_.datum.value_or(planet::VerticalDatum::egm96); }
-
-    planet::RasterFrame make_frame() {
-        const planet::MeshFrame frame = output_.frame(false);
-        const bool curved = frame == planet::MeshFrame::enu || frame == planet::MeshFrame::ecef;
-        std::shared_ptr<const planet::Geoid> geoid;
-        if (curved && !raster_->plain && datum() == planet::VerticalDatum::egm96)
-            geoid = std::make_shared<const planet::Geoid>(data_file("egm96-15.pgm"));
-        return {raster_, frame, datum(), geoid};
-    }
-
-    static bool is_nowhere(const glm::dvec3& p) { return std::isnan(p.x + p.y); }
-
-    /// Along the raster's border, before anything is made of it.
-    void check_reach() const {
-        std::vector<glm::dvec2> at;
-        for (const double row : {0, raster_->height - 1})
-            for (int column = 0; column < raster_->width; ++column) at.emplace_back(column, row);
-        for (const double column : {0, raster_->width - 1})
-            for (int row = 0; row < raster_->height; ++row) at.emplace_back(column, row);
-        const std::vector<double> heights(at.size());
-        std::vector<glm::dvec3> places(at.size());
-        frame_.place(at, heights, places, {});
-        if (std::ranges::any_of(places, is_nowhere)) refuse_reach();
-    }
-    [[noreturn]] void refuse_reach() const {
-        throw Error(Fault::bad_usage, "--frame", "does not reach all of " + raster_->name,
-                    "another frame, e.g. source");
-    }
 
     void read_features() {
         const auto step = report_.step("keep");
@@ -147,18 +119,8 @@ class RasterMesher {
             bool split = false;
             for (const planet::CellCode cell : too_far)
                 if (mesh.level_of(cell) < mesh.levels()) split |= mesh.split(cell) > 0;
-            if (!split) refuse_bound(worst);
+            if (!split) refuse_bound(*options_.max_deviation, worst, output_.format());
         }
-    }
-
-    /// @param possible metres: the deviation of a mesh of all samples
-    [[noreturn]] void refuse_bound(double possible) const {
-        const bool rounds = rounding_.xy > 0 || rounding_.z > 0;
-        throw Error(Fault::bad_usage, "--max-deviation",
-                    four_digits(*options_.max_deviation) + " m cannot be kept" +
-                        (rounds ? " in a " + options_.output->extension().string() + ", which rounds"
-                                : ": samples are kept as floats"),
-                    four_digits(possible) + " m or more" + (rounds ? ", or a .ply" : ""));
     }
 
     void make_within_budget() {
@@ -236,7 +198,7 @@ class RasterMesher {
                             options_.level           ? "a finer --level"
                             : options_.max_triangles ? "a larger --max-triangles"
                                                      : "three valid samples side by side");
-            if (std::ranges::any_of(surface_.vertices, is_nowhere)) refuse_reach();
+            if (std::ranges::any_of(surface_.vertices, is_nowhere)) refuse_reach(raster_->name);
             rounding_ = planet::round_to_format(surface_, frame_.reference(), output_.format());
         }
         const auto step = report_.step("measure");
@@ -285,7 +247,7 @@ class RasterMesher {
 
     void draw() {
         if (!options_.picture) return;
-        const planet::RasterFrame plan(raster_, planet::MeshFrame::source, datum(), nullptr);
+        const planet::RasterFrame plan = frame_of_raster(raster_, planet::MeshFrame::source, datum());
         const std::vector<glm::dvec3> places = planet::place_vertices(mesh_, plan);
         output_.draw({.vertices = places,
                       .triangles = surface_.triangles,

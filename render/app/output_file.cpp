@@ -4,10 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
-#include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <system_error>
 
 #include "planet/error.h"
@@ -16,56 +13,8 @@
 namespace render {
 namespace fs = std::filesystem;
 
-namespace {
-
-// The temporary files of this process, for the moment a signal ends it. A slot is taken, then filled: the handler sees a
-// whole name or none.
-struct Temporary {
-    std::atomic<bool> taken = false, listed = false;
-    std::array<char, 4096> path{};
-};
-std::array<Temporary, 16> temporaries;
-
-extern "C" void remove_temporaries(int signal_number) {
-    for (Temporary& each : temporaries)
-        if (each.listed) ::unlink(each.path.data());
-    ::signal(signal_number, SIG_DFL);
-    ::raise(signal_number);
-}
-
-void catch_signals() {
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-        struct sigaction action {};
-        if (::sigaction(number, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) continue;  // nohup
-        action.sa_handler = remove_temporaries;
-        ::sigaction(number, &action, nullptr);
-    }
-}
-
-void list_temporary(const std::string& path) {
-    static const bool caught = (catch_signals(), true);
-    static_cast<void>(caught);
-    for (Temporary& each : temporaries) {
-        if (path.size() >= each.path.size() || each.taken.exchange(true)) continue;
-        path.copy(each.path.data(), path.size());
-        each.path[path.size()] = 0;
-        each.listed = true;
-        return;
-    }
-}
-
-void unlist_temporary(const std::string& path) {
-    for (Temporary& each : temporaries)
-        if (each.listed && path == each.path.data()) {
-            each.listed = false;
-            each.taken = false;
-            return;
-        }
-}
-
-}  // namespace
-
-OutputFile::OutputFile(std::string where, fs::path target) : where_(std::move(where)), target_(std::move(target)) {
+OutputFile::OutputFile(std::string where, fs::path target, fs::path known_as)
+    : where_(std::move(where)), target_(std::move(target)), known_as_(std::move(known_as)) {
     if (target_.empty()) throw planet::Error(planet::Fault::bad_usage, where_, "empty file name", "a path");
     std::error_code ignored;
     const fs::file_status status = fs::status(target_, ignored);
@@ -88,7 +37,7 @@ OutputFile::OutputFile(std::string where, fs::path target) : where_(std::move(wh
             fail(error);
         }
     }
-    list_temporary(fs::absolute(temporary_));
+    listed_ = TemporaryName(temporary_);
 }
 
 OutputFile::~OutputFile() {
@@ -111,13 +60,14 @@ void OutputFile::commit(std::string_view bytes) {
     if (closed != 0) fail(errno);
     if (temporary_.empty()) return;  // a device
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
-    unlist_temporary(fs::absolute(temporary_));
     temporary_.clear();
+    listed_ = {};
 }
 
 void OutputFile::fail(int error) const {
     throw planet::Error(planet::Fault::bad_usage, where_,
-                        shown(target_.native()) + " cannot be written: " + std::generic_category().message(error),
+                        shown((known_as_.empty() ? target_ : known_as_).native()) +
+                            " cannot be written: " + std::generic_category().message(error),
                         "a file in a folder that exists and can be written");
 }
 
@@ -125,7 +75,6 @@ void OutputFile::abandon() noexcept {
     if (descriptor_ >= 0) ::close(descriptor_);
     if (temporary_.empty()) return;
     ::unlink(temporary_.c_str());
-    unlist_temporary(fs::absolute(temporary_));
 }
 
 }  // namespace render

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "render/app/temporary_names.h"
+
 namespace render {
 
 /// Opens a temporary file beside the target at once, so that an unwritable target is refused before any work is done;
@@ -13,7 +15,8 @@ namespace render {
 class OutputFile {
   public:
     /// Throws planet::Error(bad_usage) naming `where` (the option) if the file cannot be written.
-    OutputFile(std::string where, std::filesystem::path target);
+    /// @param known_as what messages call it, if not the target: where it will be in the end
+    OutputFile(std::string where, std::filesystem::path target, std::filesystem::path known_as = {});
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();
@@ -32,8 +35,9 @@ class OutputFile {
     void abandon() noexcept;
 
     std::string where_;
-    std::filesystem::path target_;
+    std::filesystem::path target_, known_as_;
     std::filesystem::path temporary_;  ///< empty when the target is written in place
+    TemporaryName listed_;
     int descriptor_ = -1;
 };
 

@@ -23,7 +23,10 @@ OutputFolder::OutputFolder(std::string where, fs::path target) : where_(std::mov
     for (int attempt = 0;; ++attempt) {
         temporary_ = target_;
         temporary_ += "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".part";
-        if (::mkdir(temporary_.c_str(), 0777) == 0) return;
+        if (::mkdir(temporary_.c_str(), 0777) == 0) {
+            listed_ = TemporaryName(temporary_);
+            return;
+        }
         if (errno == EEXIST && attempt < 100) continue;
         const int error = errno;
         temporary_.clear();
@@ -40,6 +43,7 @@ void OutputFolder::commit() {
     if (::rename(temporary_.c_str(), target_.c_str()) != 0)  // an empty folder is replaced
         fail("cannot be made: " + std::generic_category().message(errno));
     temporary_.clear();
+    listed_ = {};
 }
 
 void OutputFolder::fail(const std::string& why) const {

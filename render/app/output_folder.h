@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "render/app/temporary_names.h"
+
 namespace render {
 
 /// Makes a temporary folder beside the target at once, so that an unwritable place is refused before any work is done;
@@ -27,6 +29,7 @@ class OutputFolder {
 
     std::string where_;
     std::filesystem::path target_, temporary_;
+    TemporaryName listed_;
 };
 
 }  // namespace render

@@ -40,9 +40,16 @@ double first_segment_angle(const Camera& camera) {
     return patch_pixels / camera.focal_px;
 }
 
-void PartMesher::build(const PicturePart& part, PartMesh& mesh) {
-    double segment_angle = first_segment_angle(camera_), coarsening;
-    do {
+void PartMesher::take_tiles() {
+    if (tiles_) loaded_before_ += tiles_->count();
+    tiles_.emplace(surface_.field.cache(),
+                   planet::Placement{surface_.store->metadata().ellipsoid, surface_.exaggeration});
+}
+
+bool PartMesher::build(const PicturePart& part, Crowd crowd, PartMesh& mesh) {
+    if (surface_.field.cache().memory_bytes() > surface_.field.cache().memory_limit_bytes()) take_tiles();
+    double segment_angle = first_segment_angle(camera_), coarsening = 1;
+    for (bool crowded = true; crowded; segment_angle *= segment_angle_step) {
         mesh.view = part_view(options_, surface_, camera_, part, segment_angle);
         steps_.time("mesh", [&] {
             const Fineness fine = fineness(segment_angle);
@@ -50,13 +57,16 @@ void PartMesher::build(const PicturePart& part, PartMesh& mesh) {
             coarsening = fine.coarsening;
             build_segments(mesh);
         });
-        segment_angle *= segment_angle_step;
-    } while (detailed_patches(mesh.segments) > patch_limit && segment_angle < largest_segment_angle);
+        crowded =
+            detailed_patches(mesh.segments) > patch_limit && segment_angle * segment_angle_step < largest_segment_angle;
+        if (crowded && crowd == Crowd::refused) return false;
+    }
     certify(mesh, coarsening);
     steps_.time("normals", [&] {
         mesh.patches.build(mesh.segments, surface_.for_patches(), wgs84.mean_radius(),
                            static_cast<int>(options_.thread_count()));
     });
+    return true;
 }
 
 // A budget is the whole picture's, so that its parts fit together.
@@ -66,8 +76,8 @@ PartMesher::Fineness PartMesher::fineness(double segment_angle) {
     if (!options_.max_triangles) return {whole.test.K, 1};
     const auto [known, is_new] = fineness_.try_emplace(segment_angle);
     if (is_new) {
-        const planet::TriangleBudget budget = planet::fit_triangles(surface_.tiles, whole, *options_.max_triangles,
-                                                                    static_cast<int>(options_.thread_count()));
+        const planet::TriangleBudget budget =
+            planet::fit_triangles(*tiles_, whole, *options_.max_triangles, static_cast<int>(options_.thread_count()));
         known->second = {budget.K, budget.coarsening};
     }
     return known->second;
@@ -76,7 +86,7 @@ PartMesher::Fineness PartMesher::fineness(double segment_angle) {
 void PartMesher::build_segments(PartMesh& mesh) {
     const auto threads = static_cast<int>(options_.thread_count());
     if (!around_damage_) {
-        mesh.segments.build(surface_.tiles, mesh.view, threads);
+        mesh.segments.build(*tiles_, mesh.view, threads);
         if (surface_.field.cache().damage().empty()) return;
         const planet::Placement placement{surface_.store->metadata().ellipsoid, surface_.exaggeration};
         around_damage_ =
@@ -98,16 +108,15 @@ void PartMesher::certify(PartMesh& mesh, double coarsening) const {
 
 const planet::TileSource& PartMesher::tiles() const {
     if (around_damage_) return *around_damage_;
-    return surface_.tiles;
+    return *tiles_;
 }
 
 planet::ResidentCounts PartMesher::counts() const {
     if (around_damage_) return around_damage_->counts();
     const planet::TileCache& cache = surface_.field.cache();
-    const std::size_t tiles = surface_.tiles.count();
-    return {.tiles = tiles,
-            .tile_bytes = surface_.tiles.bytes(),
-            .tiles_loaded = tiles,
+    return {.tiles = tiles_->count(),
+            .tile_bytes = tiles_->bytes(),
+            .tiles_loaded = loaded_before_ + tiles_->count(),
             .memory_limit_bytes = cache.memory_limit_bytes(),
             .memory_peak_bytes = cache.memory_peak_bytes()};
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "planet/mesh/segments.h"
 #include "planet/streaming/resident_tiles.h"
@@ -31,15 +32,24 @@ double first_segment_angle(const Camera& camera);
 inline constexpr double segment_angle_step = 1.5, largest_segment_angle = 10;
 inline constexpr std::size_t patch_limit = 1800;
 
-/// Makes one mesh at a time, settled: every tile that the part needs is waited for.
+/// Makes one mesh at a time, settled: every tile that the part needs is waited for. Tiles stay for the next part, within
+/// the memory limit.
 class PartMesher {
   public:
     /// All must outlive it.
     PartMesher(const RenderOptions& options, const DrawnSurface& surface, const Camera& camera, Steps& steps)
-        : options_(options), surface_(surface), camera_(camera), steps_(steps) {}
+        : options_(options), surface_(surface), camera_(camera), steps_(steps) {
+        take_tiles();
+    }
 
+    /// What to do where a part takes more than patch_limit patches.
+    enum class Crowd {
+        coarser,  ///< make them coarser
+        refused,  ///< make nothing: in another part of the picture they would be as fine as they were, and a seam be seen
+    };
+    /// @return false where it was refused
     /// Throws planet::Error(bad_usage) if the coarsest mesh has more triangles than RenderOptions::max_triangles.
-    void build(const PicturePart& part, PartMesh& mesh);
+    bool build(const PicturePart& part, Crowd crowd, PartMesh& mesh);
 
     /// What build() takes its tiles from.
     const planet::TileSource& tiles() const;
@@ -50,6 +60,7 @@ class PartMesher {
     struct Fineness {
         double K, coarsening;
     };
+    void take_tiles();
     Fineness fineness(double segment_angle);
     void build_segments(PartMesh& mesh);
     void certify(PartMesh& mesh, double coarsening) const;
@@ -58,6 +69,8 @@ class PartMesher {
     const DrawnSurface& surface_;
     const Camera& camera_;
     Steps& steps_;
+    std::optional<planet::StoreTiles> tiles_;
+    std::size_t loaded_before_ = 0;        ///< tiles that went when memory was full
     std::map<double, Fineness> fineness_;  // by segment angle: the same in all parts
     // Only once a tile is known to be damaged: the cells of its parent stand in for it without a crack.
     std::unique_ptr<planet::ResidentTiles> around_damage_;

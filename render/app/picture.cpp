@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <optional>
+#include <utility>
 
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/sun.h"
@@ -25,7 +27,72 @@ namespace {
 
 using planet::wgs84;
 
-constexpr int part_side = 2048;
+/// Nothing larger is drawn at once. Parts of larger pictures have a margin that is not kept: a star whose middle is
+/// outside is not drawn, but its light would reach inside.
+constexpr int largest_drawn = 2048, part_margin = 8, least_part = 64;
+
+PicturePart grown(const PicturePart& part, int margin) {
+    return {part.x - margin, part.y - margin, part.width + 2 * margin, part.height + 2 * margin};
+}
+
+/// What two have in common; no width or no height where there is nothing.
+PicturePart common(const PicturePart& a, const PicturePart& b) {
+    const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+    return {x, y, std::max(std::min(a.x + a.width, b.x + b.width) - x, 0),
+            std::max(std::min(a.y + a.height, b.y + b.height) - y, 0)};
+}
+
+/// The parts of a picture, in rows from the top, and in smaller pieces where one is too much at once. They are the same
+/// whatever of the picture is wanted, which is why a crop has the pixels of the whole.
+class Parts {
+  public:
+    Parts(const Camera& camera, const PictureCrop& wanted)
+        : wanted_{wanted.x, wanted.y, wanted.width, wanted.height},
+          single_(camera.width <= largest_drawn && camera.height <= largest_drawn),
+          side_(single_ ? largest_drawn : largest_drawn - 2 * part_margin) {
+        for (int y = 0; y < camera.height; y += side_)
+            for (int x = 0; x < camera.width; x += side_)
+                add({x, y, std::min(side_, camera.width - x), std::min(side_, camera.height - y)});
+        std::ranges::reverse(rest_);
+    }
+
+    /// Ever the next one is the last.
+    bool empty() const { return rest_.empty(); }
+    PicturePart take() {
+        const PicturePart part = rest_.back();
+        rest_.pop_back();
+        return part;
+    }
+    bool can_be_split(const PicturePart& part) const {
+        return !single_ && std::min(part.width, part.height) >= 2 * least_part;
+    }
+    /// Its quarters come next.
+    void put_back_split(const PicturePart& part) {
+        const int w = part.width / 2, h = part.height / 2;
+        add({part.x + w, part.y + h, part.width - w, part.height - h});
+        add({part.x, part.y + h, w, part.height - h});
+        add({part.x + w, part.y, part.width - w, h});
+        add({part.x, part.y, w, h});
+    }
+
+    PicturePart drawn(const PicturePart& part) const { return single_ ? part : grown(part, part_margin); }
+    PicturePart kept(const PicturePart& part) const { return common(part, wanted_); }
+    /// The rows of what is wanted that come with a part.
+    PicturePart band(const PicturePart& part) const {
+        return common({wanted_.x, part.y / side_ * side_, wanted_.width, side_}, wanted_);
+    }
+
+  private:
+    void add(const PicturePart& part) {
+        const PicturePart k = kept(part);
+        if (k.width > 0 && k.height > 0) rest_.push_back(part);
+    }
+
+    PicturePart wanted_;
+    bool single_;
+    int side_;
+    std::vector<PicturePart> rest_;
+};
 
 /// Processor time of this thread.
 double thread_seconds() {
@@ -51,25 +118,32 @@ class Painter {
           index_(user_checksum_index()),
           surface_(steps_.time("store", [&] { return open_store(); }), options),
           camera_(steps_.time("store", [&] { return surface_.camera(options); })),
-          mesher_(options, surface_, camera_, steps) {
-        for (int y = 0; y < camera_.height; y += part_side)
-            for (int x = 0; x < camera_.width; x += part_side)
-                parts_.push_back(
-                    {x, y, std::min(part_side, camera_.width - x), std::min(part_side, camera_.height - y)});
-        begin_mesh(0);
+          mesher_(options, surface_, camera_, steps),
+          parts_(camera_, options.drawn()) {
+        begin_mesh();
         open_looks();
     }
 
     void paint(BandWriter& output) {
-        std::vector<std::uint8_t> band;
-        for (std::size_t i = 0; i < parts_.size(); ++i) {
-            const PicturePart& part = parts_[i];
-            if (part.x == 0) band.resize(static_cast<std::size_t>(camera_.width * part.height) * 3);
-            upload_mesh(i);
-            paint_part(part, band);
-            options_.progress("drawing", static_cast<double>(i + 1) / static_cast<double>(parts_.size()));
-            if (part.x + part.width == camera_.width) output.write(std::exchange(band, {}), part.height);
+        std::vector<std::uint8_t> pixels;
+        PicturePart band;  // of these pixels
+        double done = 0;
+        const double all = static_cast<double>(options_.drawn().width) * options_.drawn().height;
+        const auto write_band = [&] {
+            if (band.height > 0) output.write(std::exchange(pixels, {}), band.height);
+        };
+        while (const auto part = next_mesh()) {
+            if (const PicturePart next = parts_.band(*part); next.y != band.y || band.height == 0) {
+                write_band();
+                band = next;
+                pixels.resize(static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.height) * 3);
+            }
+            const PicturePart kept = parts_.kept(*part);
+            paint_part(parts_.drawn(*part), kept, band, pixels);
+            done += static_cast<double>(kept.width) * kept.height;
+            options_.progress("drawing", done / all);
         }
+        write_band();
         index_.save();
         fill_report();
         if (options_.measure_frames) measure_frames();
@@ -104,16 +178,26 @@ class Painter {
         set_reversed_depth();
     }
 
-    /// Starts making the mesh of a part. Two are in use at a time: that one, and the one that is drawn.
-    void begin_mesh(std::size_t i) {
-        if (i < parts_.size()) mesh_ = beside(threads_, [this, i] { mesher_.build(parts_[i], meshes_[i & 1]); });
+    /// Starts making the mesh of the next part. Two are in use at a time: that one, and the one that is drawn.
+    void begin_mesh() {
+        made_ = 1 - made_;
+        mesh_ = beside(threads_, [this]() -> std::optional<PicturePart> {
+            while (!parts_.empty()) {
+                const PicturePart part = parts_.take();
+                const auto crowd = parts_.can_be_split(part) ? PartMesher::Crowd::refused : PartMesher::Crowd::coarser;
+                if (mesher_.build(parts_.drawn(part), crowd, meshes_[made_])) return part;
+                parts_.put_back_split(part);
+            }
+            return {};
+        });
     }
 
-    void upload_mesh(std::size_t i) {
-        mesh_.get();
-        const PartMesh& mesh = meshes_[i & 1];
+    /// Uploads a mesh and begins another. @return the part it is of; nothing behind the last one
+    std::optional<PicturePart> next_mesh() {
+        const std::optional<PicturePart> part = mesh_.get();
+        if (!part) return part;
+        const PartMesh& mesh = meshes_[made_];
         const planet::Segments& segments = mesh.segments;
-        begin_mesh(i + 1);
         steps_.time("upload", [&] {
             looks_.terrain().upload(segments, mesh.patches.layers());
             looks_.overlay().upload(segments, mesher_.tiles());
@@ -125,29 +209,38 @@ class Painter {
         report_.sent_bytes += looks_.terrain().sent_bytes();
         report_.deviation_max_m = std::max(report_.deviation_max_m, mesh.deviation_max_m);
         report_.pixel_deviation_max = std::max(report_.pixel_deviation_max, mesh.pixel_deviation_max);
+        last_ = made_;
+        begin_mesh();
+        return part;
     }
 
-    void paint_part(const PicturePart& part, std::vector<std::uint8_t>& band) {
-        std::vector<std::uint8_t> pixels;
+    /// @param part that is drawn @param kept of it @param band of the picture, into whose pixels that goes
+    void paint_part(const PicturePart& part, const PicturePart& kept, const PicturePart& band,
+                    std::vector<std::uint8_t>& pixels) {
+        std::vector<std::uint8_t> drawn;
         steps_.time("draw", [&] {
-            const int samples = options_.samples > 0 ? options_.samples
-                                : looks_.from_afar(camera_, options_.exaggeration)
-                                    ? 1
-                                    : std::min(4, context_.limits().samples);
-            if (!target_ || target_.width() != part.width || target_.height() != part.height)
+            if (!target_ || target_.width() != part.width || target_.height() != part.height) {
+                target_ = Framebuffer();  // before another takes memory
+                const int samples = looks_.samples(options_, camera_, context_.limits().samples);
                 target_ = Framebuffer(part.width, part.height, {.color_format = GL_RGBA8, .samples = samples});
+            }
             target_.bind();
+            // What is not wanted need not be drawn; OpenGL counts rows from below.
+            gl().Enable(GL_SCISSOR_TEST);
+            gl().Scissor(kept.x - part.x, part.y + part.height - kept.y - kept.height, kept.width, kept.height);
             target_.clear(0, 0, 0, 1);
             looks_.draw({camera_, part, options_.exaggeration, patch_texture_});
-            pixels = target_.read_rgba8();
+            drawn = target_.read_rgba8();
+            gl().Disable(GL_SCISSOR_TEST);
         });
-        for (int y = 0; y < part.height; ++y) {
-            const std::uint8_t* from =
-                pixels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(part.width) * 4;
-            std::uint8_t* to = band.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) +
-                                              static_cast<std::size_t>(part.x)) *
-                                                 3;
-            for (int x = 0; x < part.width; ++x, from += 4, to += 3) std::copy_n(from, 3, to);
+        const auto index = [](const PicturePart& of, int x, int y) {
+            return static_cast<std::size_t>(y - of.y) * static_cast<std::size_t>(of.width) +
+                   static_cast<std::size_t>(x - of.x);
+        };
+        for (int y = kept.y; y < kept.y + kept.height; ++y) {
+            const std::uint8_t* from = drawn.data() + index(part, kept.x, y) * 4;
+            std::uint8_t* to = pixels.data() + index(band, kept.x, y) * 3;
+            for (int x = 0; x < kept.width; ++x, from += 4, to += 3) std::copy_n(from, 3, to);
         }
     }
 
@@ -166,7 +259,7 @@ class Painter {
 
     void pick_centre() {
         const glm::dvec3 forward = -glm::dvec3(glm::transpose(camera_.view_from_ecef)[2]);
-        const planet::SplitTest& test = meshes_[(parts_.size() - 1) & 1].view.test;  // the same for all parts
+        const planet::SplitTest& test = meshes_[last_].view.test;  // the same for all parts
         const auto picked = planet::pick(mesher_.tiles(), test, camera_.eye, forward);
         if (!picked) return;
         const glm::dvec3 normal = planet::normal_from_ecef(wgs84, picked->position);
@@ -177,7 +270,7 @@ class Painter {
 
     /// What a frame costs once the last part is drawn: the same view again, and the eye a hundredth of its height ahead.
     void measure_frames() {
-        PartMesh& mesh = meshes_[(parts_.size() - 1) & 1];
+        PartMesh& mesh = meshes_[last_];
         const glm::dvec3 forward = -glm::dvec3(glm::transpose(camera_.view_from_ecef)[2]);
         const glm::dvec3 ahead = camera_.eye + forward * (0.01 * std::abs(report_.eye_height_m));
         const auto frame = [&](const glm::dvec3& eye) {
@@ -208,9 +301,10 @@ class Painter {
     GlobeLooks looks_;
     Texture patch_texture_;
     Framebuffer target_;
-    std::vector<PicturePart> parts_;
-    PartMesh meshes_[2];      ///< by the last bit of the part's number
-    std::future<void> mesh_;  ///< last: its end waits for work that uses all of the above
+    Parts parts_;
+    PartMesh meshes_[2];
+    int made_ = 0, last_ = 0;                         ///< of these: the one being made, and the last that was drawn
+    std::future<std::optional<PicturePart>> mesh_{};  ///< last: its end waits for work that uses all of the above
 };
 
 }  // namespace

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#define OCTAGLOBE_COMMANDS(command)                                                                       \
-    command(render) command(view) command(bake) command(mesh) command(tin) command(refine) command(query) \
+#define OCTAGLOBE_COMMANDS(command)                                                                                    \
+    command(render) command(view) command(fly) command(bake) command(mesh) command(tin) command(refine) command(query) \
         command(check) command(verify) command(info)
 
 namespace render {

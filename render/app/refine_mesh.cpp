@@ -11,6 +11,7 @@
 #include "planet/geodesy/geodetic.h"
 #include "planet/parallel.h"
 #include "render/app/figures.h"
+#include "render/app/mesh_output.h"
 #include "render/app/progress.h"
 #include "render/app/refine_base.h"
 #include "render/app/refine_output.h"

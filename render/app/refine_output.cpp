@@ -1,4 +1,5 @@
 #include "render/app/refine_output.h"
+#include "render/app/mesh_output.h"
 
 #include <algorithm>
 
@@ -87,12 +88,6 @@ glm::dvec3 middle_of(std::span<const glm::dvec3> vertices) {
 void report_rule(planet::BisectionRule rule, planet::SideGeometry sides, Report& report) {
     report.set("rule", rule == planet::BisectionRule::modified ? "modified" : "plain");
     report.set("sides", sides == planet::SideGeometry::plan ? "plan" : "space");
-}
-
-void report_reference(const planet::MeshReference& reference, Report& report) {
-    report.set("frame", planet::to_string(reference.frame));
-    report.set("crs", reference.crs);
-    report.set("vertical_datum", reference.vertical_datum);
 }
 
 planet::MeshReference written_reference(const RefineMeaning& meaning, MeshFormat format) {

@@ -15,8 +15,6 @@ namespace render {
 
 /// rule, sides: of a mesh, and of a progressive one.
 void report_rule(planet::BisectionRule rule, planet::SideGeometry sides, Report& report);
-/// frame, crs, vertical_datum.
-void report_reference(const planet::MeshReference& reference, Report& report);
 
 /// What a file says of its coordinates. An .stl holds any that are not degrees and nowhere known.
 planet::MeshReference written_reference(const RefineMeaning& meaning, planet::MeshFormat format);

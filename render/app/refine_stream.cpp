@@ -11,6 +11,7 @@
 #include "planet/error.h"
 #include "planet/frames.h"
 #include "render/app/figures.h"
+#include "render/app/mesh_output.h"
 #include "render/app/output_folder.h"
 #include "render/app/progress.h"
 #include "render/app/refine_base.h"

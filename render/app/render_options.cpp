@@ -90,6 +90,17 @@ void add_drawing_options(CLI::App& command, RenderOptions& o) {
 
 }  // namespace
 
+void add_lens_options(CLI::App& command, RenderOptions& o) {
+    add_value(command, "--fov", "DEGREES", "Field of view across the shorter side, 1 to 150 [40]",
+              [&](Where where, const std::string& text) {
+                  o.fov = parse_angle(where, text, {1, 150});
+              });
+    add_value(command, "--size", "WxH", "Pixels [1920x1080; of a window and of frames 1280x720]",
+              [&](Where where, const std::string& text) { o.size = parse_size(where, text); });
+    add_value(command, "--time", "UTC", "Where the sun and the stars are [2026-06-21T09:00:00Z]",
+              [&](Where where, const std::string& text) { o.time = planet::utc_from_iso8601(text, where); });
+}
+
 void add_view_options(CLI::App& command, RenderOptions& o) {
     add_value(command, "--at", "LAT,LON", "The place, degrees (without it: the whole globe)",
               [&](Where where, const std::string& text) { o.at = parse_place(where, text); });
@@ -110,14 +121,7 @@ void add_view_options(CLI::App& command, RenderOptions& o) {
               [&](Where where, const std::string& text) {
                   o.pitch = parse_angle(where, text, {-90, 90});
               });
-    add_value(command, "--fov", "DEGREES", "Field of view across the shorter side, 1 to 150 [40]",
-              [&](Where where, const std::string& text) {
-                  o.fov = parse_angle(where, text, {1, 150});
-              });
-    add_value(command, "--size", "WxH", "Pixels [1920x1080]",
-              [&](Where where, const std::string& text) { o.size = parse_size(where, text); });
-    add_value(command, "--time", "UTC", "Where the sun and the stars are [2026-06-21T09:00:00Z]",
-              [&](Where where, const std::string& text) { o.time = planet::utc_from_iso8601(text, where); });
+    add_lens_options(command, o);
 }
 
 void add_elevation_options(CLI::App& command, EarthSources& sources) {
@@ -140,13 +144,19 @@ void add_look_options(CLI::App& command, RenderOptions& o) {
     add_files(command, "--imagery", "Pictures of the whole globe, the last on top, instead of the default", o.imagery);
 }
 
-void add_picture_options(CLI::App& command, RenderOptions& o) {
-    add_view_options(command, o);
-    add_look_options(command, o);
+void add_backend_option(CLI::App& command, RenderOptions& o) {
     add_value(command, "--backend", "NAME", "auto, egl, egl-device, egl-surfaceless or osmesa [auto]",
               [&](Where where, const std::string& text) {
                   o.backend = backends[parse_choice(where, text, names_of_backends())];
               });
+}
+
+void add_picture_options(CLI::App& command, RenderOptions& o) {
+    add_view_options(command, o);
+    add_look_options(command, o);
+    add_backend_option(command, o);
+    add_value(command, "--crop", "X,Y,WxH", "Only this part of the picture: the pixels it has in the whole",
+              [&](Where where, const std::string& text) { o.crop = parse_crop(where, text); });
     add_value(command, "-o,--output", "FILE", "The picture: .png, .jpg, .tif or .exr [globe.png]",
               [&](Where where, const std::string& text) { o.output = picture_path_from_text(where, text); });
 }

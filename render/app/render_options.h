@@ -76,6 +76,7 @@ struct RenderOptions {
     std::optional<std::filesystem::path> store{};  ///< a baked store instead of the default Earth
     std::vector<std::filesystem::path> imagery{};  ///< pictures of the whole globe, later on top
 
+    std::optional<PictureCrop> crop{};  ///< only these pixels of the picture, just as they are in the whole
     std::filesystem::path output = "globe.png";
 
     /// Told how far a step is, 0..1 or NaN, from any thread. Never null.
@@ -85,6 +86,8 @@ struct RenderOptions {
     unsigned thread_count() const {
         return threads > 0 ? static_cast<unsigned>(threads) : std::max(1u, std::thread::hardware_concurrency());
     }
+    /// What of the picture is drawn.
+    PictureCrop drawn() const { return crop.value_or(PictureCrop{0, 0, size.width, size.height}); }
     bool shows(Overlay overlay) const { return (show & static_cast<std::uint32_t>(overlay)) != 0; }
 };
 
@@ -92,11 +95,16 @@ struct RenderOptions {
 /// checked while parsing (planet::Error, bad_usage).
 void add_elevation_options(CLI::App& command, EarthSources& sources);
 
+/// Adds --fov, --size and --time.
+void add_lens_options(CLI::App& command, RenderOptions& options);
+
 /// Adds --at to --time.
 void add_view_options(CLI::App& command, RenderOptions& options);
 
 /// Adds what is drawn and how well, and the sources: all the others but --output and --json.
 void add_look_options(CLI::App& command, RenderOptions& options);
+
+void add_backend_option(CLI::App& command, RenderOptions& options);
 
 /// Adds all options of a picture but --json.
 void add_picture_options(CLI::App& command, RenderOptions& options);

@@ -6,11 +6,11 @@
 
 #include "planet/elevation/raster_writer.h"
 #include "planet/error.h"
-#include "planet/mesh/surface_check.h"
 #include "planet/tin/make_tin.h"
 #include "render/app/figures.h"
 #include "render/app/mesh_output.h"
 #include "render/app/progress.h"
+#include "render/app/raster_frames.h"
 #include "render/app/tin_gpu_measure.h"
 #include "render/app/tin_looks.h"
 #include "render/app/tin_source.h"
@@ -61,7 +61,7 @@ class TinMaker {
     }
     MeshFrame frame_kind() const {
         if (command_.frame) return *command_.frame;
-        return format_ == MeshFormat::glb || format_ == MeshFormat::stl ? MeshFrame::enu : MeshFrame::source;
+        return usual_frame(format_);
     }
     std::unique_ptr<planet::RasterWriter> open_error_grid() const {
         if (!command_.error_grid) return nullptr;
@@ -135,31 +135,16 @@ class TinMaker {
         if (command_.max_triangles) goal.max_triangles = *command_.max_triangles;
         goal.format = format_;
         goal.by_sample = error_grid_ != nullptr;
-        goal.base = command_.base;
+        if (command_.base) goal.floor = floor_below(heights_, frame_, *command_.base);
         goal.features = features_;
         WrittenTin tin = as_written(std::move(made.mesh), heights_, frame_, goal);
-        if (!tin.kept && !tin.mendable) refuse_bound(tin.deviation_max);
+        if (!tin.kept && !tin.mendable) refuse_bound(*command_.max_deviation, tin.deviation_max, format_);
         if (!tin.kept) end_ = planet::GreedyEnd::budget;  // what would mend it is more than there may be
-        if (command_.base) check_closed(tin);
+        if (command_.base) {
+            report_.set("euler", check_closed(tin.surface, frame_.reference().frame));
+            report_.set("closed", true);
+        }
         return tin;
-    }
-
-    void check_closed(const WrittenTin& tin) {
-        const planet::SurfaceCheck found = planet::check(tin.surface, frame_.reference().frame);
-        if (found.border_sides + found.wrong_sides + found.degenerate + found.unused_vertices > 0)
-            throw Error(Fault::check_failed, "the solid", "is not closed: " + found.summary());
-        report_.set("closed", true);
-        report_.set("euler", found.euler());
-    }
-
-    /// @param possible metres
-    [[noreturn]] void refuse_bound(double possible) const {
-        const bool rounds = format_ == MeshFormat::glb || format_ == MeshFormat::stl;
-        throw Error(Fault::bad_usage, "--max-deviation",
-                    four_digits(*command_.max_deviation) + " m cannot be kept" +
-                        (rounds ? " in a " + command_.output->extension().string() + ", which rounds"
-                                : ": samples are kept as floats"),
-                    four_digits(possible) + " m or more" + (rounds ? ", or a .ply" : ""));
     }
 
     planet::MeshLooks looks(const WrittenTin& tin) const {
@@ -212,20 +197,10 @@ class TinMaker {
         report_.set("rounding_z_m", tin.rounding.z);
         report_.set("exaggeration", command_.exaggeration);
         if (command_.base) report_.set("base_m", *command_.base);
-        if (!command_.features.empty()) report_features();
+        if (!command_.features.empty()) report_features(features_found_, features_.outside, report_);
         report_.set("source", source_.raster()->name);
         report_.set("columns", heights_.width());
         report_.set("rows", heights_.height());
-    }
-
-    void report_features() {
-        report_.set("feature_points", features_found_.points);
-        report_.set("feature_sides", features_found_.line_sides + features_found_.around_voids);
-        report_.set("feature_duplicates", features_found_.duplicates);
-        report_.set("feature_crossings", features_found_.crossings);
-        report_.set("features_outside", features_.outside);
-        report_.set("features_over_voids", features_found_.over_voids);
-        report_.set("features_dropped", features_found_.dropped);
     }
 
     std::string stopped_by() const { return end_ == planet::GreedyEnd::budget ? "triangles" : "deviation"; }

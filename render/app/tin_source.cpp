@@ -8,8 +8,8 @@
 #include "planet/elevation/elevation_sources.h"
 #include "planet/error.h"
 #include "planet/tin/mosaic_grid.h"
-#include "render/app/data_path.h"
 #include "render/app/mesh_keep.h"
+#include "render/app/raster_frames.h"
 
 namespace render {
 namespace {
@@ -60,10 +60,6 @@ std::shared_ptr<const planet::Raster> without_samples(const planet::RasterHeader
     return raster;
 }
 
-bool is_nowhere(const glm::dvec3& p) {
-    return std::isnan(p.x + p.y);
-}
-
 }  // namespace
 
 TinSource::TinSource(const TinCommand& command)
@@ -100,37 +96,15 @@ planet::HeightGrid TinSource::heights(glm::ivec2 first, glm::ivec2 last) const {
     return grid;
 }
 
-planet::RasterFrame TinSource::make_frame(MeshFrame frame) const {
-    const bool curved = frame == MeshFrame::enu || frame == MeshFrame::ecef;
-    std::shared_ptr<const planet::Geoid> geoid;
-    if (curved && !raster_->plain && datum() == planet::VerticalDatum::egm96)
-        geoid = std::make_shared<const planet::Geoid>(data_file("egm96-15.pgm"));
-    return {raster_, frame, datum(), geoid, command_.exaggeration};
-}
-
 planet::RasterFrame TinSource::frame(MeshFrame kind, planet::MeshFormat format) const {
-    planet::RasterFrame frame = make_frame(kind);
+    planet::RasterFrame frame = frame_of_raster(raster_, kind, datum(), command_.exaggeration);
     planet::check_frame(frame.reference(), format);
-    if (!frame.affine()) check_reach(frame);
+    if (!frame.affine()) check_reach(frame, *raster_);
     return frame;
 }
 
 planet::RasterFrame TinSource::tangent_frame() const {
-    return make_frame(MeshFrame::enu);
-}
-
-void TinSource::check_reach(const planet::RasterFrame& frame) const {
-    std::vector<glm::dvec2> at;
-    for (const double row : {0, raster_->height - 1})
-        for (int column = 0; column < raster_->width; ++column) at.emplace_back(column, row);
-    for (const double column : {0, raster_->width - 1})
-        for (int row = 0; row < raster_->height; ++row) at.emplace_back(column, row);
-    const std::vector<double> heights(at.size());
-    std::vector<glm::dvec3> places(at.size());
-    frame.place(at, heights, places, {});
-    if (std::ranges::any_of(places, is_nowhere))
-        throw Error(Fault::bad_usage, "--frame", "does not reach all of " + raster_->name,
-                    "another frame, e.g. source");
+    return frame_of_raster(raster_, MeshFrame::enu, datum(), command_.exaggeration);
 }
 
 planet::TinFeatures TinSource::features() const {
@@ -148,6 +122,16 @@ planet::TinFeatures TinSource::features() const {
 
 std::vector<glm::ivec2> TinSource::pole_samples() const {
     return samples_at_poles(*raster_);
+}
+
+void report_features(const planet::FeatureReport& found, std::size_t outside, Report& report) {
+    report.set("feature_points", found.points);
+    report.set("feature_sides", found.line_sides + found.around_voids);
+    report.set("feature_duplicates", found.duplicates);
+    report.set("feature_crossings", found.crossings);
+    report.set("features_outside", outside);
+    report.set("features_over_voids", found.over_voids);
+    report.set("features_dropped", found.dropped);
 }
 
 double share_above_plane(const planet::RasterFrame& tangent, glm::ivec2 size) {

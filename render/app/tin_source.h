@@ -41,14 +41,14 @@ class TinSource {
     std::vector<glm::ivec2> pole_samples() const;
 
   private:
-    planet::RasterFrame make_frame(planet::MeshFrame frame) const;
-    void check_reach(const planet::RasterFrame& frame) const;
-
     const TinCommand& command_;
     std::unique_ptr<const planet::RasterMosaic> mosaic_;
     std::shared_ptr<const planet::Raster> raster_;
     std::vector<planet::Polygon> mask_;
 };
+
+/// What became of the features that a command names. @param outside of the raster
+void report_features(const planet::FeatureReport& found, std::size_t outside, Report& report);
 
 /// Whether a frame curves, so that deviations are not those of the lattice.
 inline bool curves(const planet::RasterFrame& frame) {

@@ -1,327 +1,212 @@
 // octaglobe tin --tile: a folder of meshes whose borders match bit for bit, of rasters of any size.
 //
 // What both tiles of a border must agree on follows from its samples and one tolerance: its vertices, and the grid on which
-// a .glb rounds. Where a frame curves, a sample on a border may still be too far from the triangles of either tile: then it
-// becomes a vertex of both, which are made again.
+// a .glb rounds. Where a tile needs another vertex on its border, as a sample is too far in a frame that curves, or where
+// features cross, it becomes one of both tiles, which are made again.
 
-#include <atomic>
 #include <cmath>
 #include <iostream>
 #include <map>
 #include <mutex>
 #include <set>
+#include <unordered_map>
 
-#include "planet/elevation/raster_writer.h"
 #include "planet/error.h"
 #include "planet/parallel.h"
+#include "planet/tin/tiled_features.h"
 #include "render/app/figures.h"
+#include "render/app/mesh_output.h"
 #include "render/app/output_folder.h"
-#include "render/app/progress.h"
-#include "render/app/tin_looks.h"
-#include "render/app/tin_source.h"
-#include "render/app/tin_written.h"
+#include "render/app/tin_budget.h"
+#include "render/app/tin_tile.h"
+#include "render/app/tin_tile_samples.h"
 
 namespace render {
 namespace {
 
 using planet::Error;
 using planet::Fault;
-using planet::HeightGrid;
-using planet::MeshFormat;
-using planet::MeshFrame;
 
 /// What became of a tile.
 struct TileFigures {
-    std::size_t triangles = 0, vertices = 0, bytes = 0, samples = 0, uncovered = 0, voids = 0, mended = 0;
-    double max = 0, squares = 0, angle = std::numeric_limits<double>::infinity();
+    std::size_t triangles = 0;  ///< of the TIN: without the walls and the floor of a solid
+    std::size_t written_triangles = 0, vertices = 0, bytes = 0, mended = 0;
+    SampleCount samples;
+    planet::FeatureReport features;
+    double max = 0, angle = std::numeric_limits<double>::infinity();
+    bool kept = true;  ///< the tolerance
+
+    TileFigures& operator+=(const TileFigures& other) {
+        triangles += other.triangles;
+        written_triangles += other.written_triangles;
+        vertices += other.vertices;
+        bytes += other.bytes;
+        mended += other.mended;
+        samples += other.samples;
+        features += other.features;
+        max = std::max(max, other.max);
+        angle = std::min(angle, other.angle);
+        kept = kept && other.kept;
+        return *this;
+    }
 };
 
-/// A tile's samples, those beside them, and the frame of both.
-struct TileWindow {
-    glm::ivec2 low, high;  ///< of the tile, in the raster
-    glm::ivec2 first;      ///< of the window
-    HeightGrid window, tile;
-};
-
-class TileMaker {
+class TinFolder {
   public:
-    TileMaker(const TinCommand& command, Report& report)
+    TinFolder(const TinCommand& command, Report& report)
         : command_(command),
           report_(report),
-          format_(command.tile_format),
           folder_("--output", *command.output),
           source_(command),
-          frame_(source_.frame(frame_kind(), format_)),
-          tiling_(make_tiling()),
-          end_(tiling_.width() - 1, tiling_.height() - 1),
-          map_(*source_.raster()),
+          maker_(command, source_),
+          tiling_(maker_.tiling()),
           figures_(tiling_.count()) {
-        if (curves(frame_)) {
-            tangent_.emplace(source_.tangent_frame());
-            scale_ = command.exaggeration * share_above_plane(*tangent_, {tiling_.width(), tiling_.height()});
-        }
         if (command.error_grid)
             error_grid_ = std::make_unique<planet::RasterWriter>(command.error_grid->string(), *source_.raster());
-        if (command.drape) drape_.emplace(*command.drape);
+        samples_.emplace(tiling_, error_grid_.get());
     }
 
     void run() {
-        survey();
-        make_all();
-        total();
-        finish_error_grid();
+        read_features();
+        {
+            const auto step = report_.step("survey");
+            maker_.survey(progress_);
+        }
+        const double tolerance = command_.max_triangles ? tolerance_for_budget() : *command_.max_deviation;
+        {
+            const auto step = report_.step("tiles");
+            make_all(tolerance, true);
+        }
+        check_budget();
+        if (error_grid_) {
+            samples_->write_the_rest();
+            error_grid_->finish();
+        }
         folder_.commit();
         fill_report();
         tell();
     }
 
   private:
-    using Sample = std::pair<int, int>;  // row, column
+    using Needs = std::unordered_map<std::size_t, planet::TinTileNeeds>;
 
-    planet::TinTiling make_tiling() const {
-        constexpr std::size_t most = 1'000'000;
-        const planet::TinTiling tiling(source_.raster()->width, source_.raster()->height, command_.tile);
-        if (tiling.count() > most)
-            throw Error(Fault::bad_usage, "--tile", std::to_string(tiling.count()) + " tiles are too many",
-                        "at most " + std::to_string(most) + ": larger ones");
-        return tiling;
-    }
-    MeshFrame frame_kind() const {
-        if (command_.frame) return *command_.frame;
-        return format_ == MeshFormat::glb || format_ == MeshFormat::stl ? MeshFrame::enu : MeshFrame::source;
-    }
+    // ---- what tiles must have ----
 
-    // ---- what all tiles have in common ----
-
-    /// By how much the format moves a vertex at most, and a .glb's grid for all tiles: that of the largest.
-    void survey() {
-        if (format_ == MeshFormat::ply || format_ == MeshFormat::obj) return;
-        const auto step = report_.step("survey");
-        const glm::dvec2 range = range_of_heights();
-        for (std::size_t i = 0; i < tiling_.count(); ++i) {
-            PlacedBox box = box_of_window(frame_, tiling_.low(i), tiling_.high(i), range.x, range.y);
-            const glm::dvec3 spare = 0.01 * (box.high - box.low);  // the box is about right
-            const auto bound = planet::rounding_bound(box.low - spare, box.high + spare, frame_.reference(), format_);
-            grid_step_ = std::max(grid_step_, bound.step);
-            rounding_ = std::max(rounding_, bound.z / command_.exaggeration + bound.xy);
+    void read_features() {
+        if (!command_.features.empty()) {
+            const auto step = report_.step("features");
+            const planet::TinFeatures features = source_.features();
+            features_outside_ = features.outside;
+            needs_ = planet::cut_into_tiles(features, tiling_);
         }
+        if (curves(maker_.frame()))
+            for (const glm::ivec2 p : source_.pole_samples()) need(needs_, p);
     }
-    glm::dvec2 range_of_heights() {
-        std::vector<glm::dvec2> ranges(tiling_.count());
-        std::atomic<std::size_t> done = 0;
-        planet::parallel_for(tiling_.count(), 0, [&](std::size_t i) {
-            ranges[i] = height_range(source_.heights(tiling_.low(i), tiling_.high(i)));
-            progress_.update("reading", static_cast<double>(++done) / static_cast<double>(tiling_.count()));
-        });
-        glm::dvec2 all = ranges.front();
-        for (const glm::dvec2 r : ranges) all = {std::min(all.x, r.x), std::max(all.y, r.y)};
-        if (all.x > all.y) refuse_void();
-        return all;
+    /// @return tiles
+    std::vector<std::size_t> need(Needs& needs, glm::ivec2 sample) const {
+        std::vector<std::size_t> tiles = tiling_.tiles_at(sample);
+        for (const std::size_t tile : tiles) needs[tile].border.push_back(sample);
+        return tiles;
     }
-    [[noreturn]] void refuse_void() const {
-        throw Error(Fault::bad_data, source_.raster()->name, "holds no heights: every sample is nodata or masked",
-                    "one band of heights");
+
+    // ---- the budget ----
+
+    /// By making all tiles several times, unwritten.
+    double tolerance_for_budget() {
+        const auto step = report_.step("search");
+        const std::size_t budget = *command_.max_triangles;
+        const auto triangles = [&](double tolerance) {
+            make_all(tolerance, false);
+            return all_.triangles;
+        };
+        double least = 0;
+        if (command_.max_deviation) {
+            least = *command_.max_deviation;
+            if (triangles(least) <= budget) return least;
+        }
+        by_budget_ = true;
+        constexpr double most = 1e7;
+        const BudgetFit found = fit_to_budget(triangles, budget, least, most);
+        report_.set("search_trials", found.trials);
+        if (found.triangles > budget)
+            throw Error(Fault::bad_usage, "--max-triangles", std::to_string(budget) + " are fewer than the tiles need",
+                        std::to_string(found.triangles) + " or more, or larger tiles");
+        return found.tolerance;
+    }
+    void check_budget() const {
+        if (by_budget_ && all_.triangles > *command_.max_triangles)
+            throw Error(Fault::check_failed, "the tiles", "have more triangles than when they were tried");
     }
 
     // ---- tiles ----
 
-    void make_all() {
-        const auto step = report_.step("tiles");
+    /// The same figures whenever called with a tolerance.
+    void make_all(double tolerance, bool written) {
+        Needs needs = needs_;
         std::vector<std::size_t> todo(tiling_.count());
         for (std::size_t i = 0; i < todo.size(); ++i) todo[i] = i;
-        if (tangent_)
-            for (const glm::ivec2 p : source_.pole_samples()) inserted_.insert({p.y, p.x});
+        remade_ = 0;
+        shared_ = 0;
         for (double done = 0; !todo.empty();) {
             std::mutex mutex;
-            std::set<Sample> too_far;
+            std::set<std::pair<int, int>> needed;  // row, column
             planet::parallel_for(todo.size(), 0, [&](std::size_t i) {
-                const std::vector<glm::ivec2> found = make(todo[i]);
+                const auto own = needs.find(todo[i]);
+                const std::vector<glm::ivec2> found =
+                    make(todo[i], own == needs.end() ? planet::TinTileNeeds{} : own->second, tolerance, written);
                 const std::lock_guard lock(mutex);
-                for (const glm::ivec2 p : found) too_far.insert({p.y, p.x});
-                progress_.update("triangulating", ++done / static_cast<double>(tiling_.count()));
+                for (const glm::ivec2 p : found) needed.insert({p.y, p.x});
+                progress_.update(written ? "triangulating" : "trying", ++done / static_cast<double>(tiling_.count()));
             });
-            inserted_.insert(too_far.begin(), too_far.end());
-            todo = tiles_with(too_far);
+            std::set<std::size_t> again;
+            for (const auto& [y, x] : needed)
+                for (const std::size_t tile : need(needs, {x, y})) again.insert(tile);
+            todo.assign(again.begin(), again.end());
             remade_ += todo.size();
+            shared_ += needed.size();
         }
+        all_ = {};
+        for (const TileFigures& figures : figures_) all_ += figures;
+        if (all_.triangles == 0) maker_.refuse_void();
     }
 
-    TileWindow read(std::size_t tile) const {
-        const glm::ivec2 low = tiling_.low(tile), high = tiling_.high(tile);
-        const glm::ivec2 first = glm::max(low - ground_reach, 0), last = glm::min(high + ground_reach, end_);
-        HeightGrid window = source_.heights(first, last);
-        HeightGrid inner(window, low - first, high - first);
-        return {low, high, first, std::move(window), std::move(inner)};
-    }
-
-    planet::TinMesh triangulate(const TileWindow& w) const {
-        const double bound = *command_.max_deviation;
-        planet::TiledTinOptions how;
-        how.tolerance = scale_ * std::max(0.5 * bound, bound - rounding_);
-        how.quality = command_.quality;
-        std::optional<HeightGrid> over_plane;
-        if (tangent_) over_plane.emplace(planet::heights_above_tangent_plane(w.window, tangent_->window(w.first), 1));
-        planet::TinMesh mesh = planet::tin_tile(over_plane ? *over_plane : w.window, w.low - w.first, w.high - w.first,
-                                                how, w.first - w.low)
-                                   .mesh;
-        std::vector<glm::ivec2> more;
-        for (const auto& [y, x] : inserted_)
-            if (w.tile.inside(glm::ivec2(x, y) - w.low)) more.push_back(glm::ivec2(x, y) - w.low);
-        return more.empty() ? mesh : planet::with_samples(mesh, w.tile, more, {});
-    }
-
-    /// Makes a tile and writes it. @return samples on its border that are too far: if there are any, nothing is written
-    std::vector<glm::ivec2> make(std::size_t tile) {
-        const TileWindow w = read(tile);
+    /// @return samples on its border that it needs to share: if there are any, nothing is written
+    std::vector<glm::ivec2> make(std::size_t tile, const planet::TinTileNeeds& needs, double tolerance, bool written) {
+        const TileWindow w = maker_.read(tile);
         TileFigures& figures = figures_[tile] = {};
-        planet::TinMesh mesh = triangulate(w);
-        if (mesh.triangles.empty()) {
-            count_samples(tile, w, {}, figures);
+        std::optional<MadeTile> made = maker_.make(w, needs, tolerance);
+        if (!made) {
+            if (written) figures.samples = samples_->count(tile, w, {});
             return {};
         }
-        TinGoal goal;
-        goal.tolerance = *command_.max_deviation;
-        goal.format = format_;
-        goal.least_step = grid_step_;
-        goal.threads = 1;
-        goal.by_sample = true;
-        goal.border_is_shared = true;
-        WrittenTin tin = as_written(std::move(mesh), w.tile, frame_.window(w.low), goal);
-        if (!tin.border_samples.empty()) {
-            for (glm::ivec2& p : tin.border_samples) p += w.low;
-            return std::move(tin.border_samples);
-        }
-        if (!tin.kept) refuse_bound(tin.deviation_max);
-        if (tin.rounding.step != grid_step_)
-            throw Error(Fault::check_failed, name_of(tile), "does not lie on the grid that all tiles share");
-        figures.triangles = tin.surface.triangles.size();
+        if (!made->needed.empty()) return std::move(made->needed);
+        const WrittenTin& tin = made->tin;
+        if (!tin.kept && !by_budget_) refuse_bound(tolerance, tin.deviation_max, command_.tile_format);
+        figures.triangles = tin.mesh.triangles.size();
+        figures.written_triangles = tin.surface.triangles.size();
         figures.vertices = tin.surface.vertices.size();
+        figures.mended = tin.inserted;
+        figures.features = made->features;
         figures.max = tin.deviation_max;
         figures.angle = tin.deviation.angle_min;
-        figures.mended = tin.inserted;
-        count_samples(tile, w, tin.deviation.by_sample, figures);
-        OutputFile file("--output", folder_.path() / name_of(tile));
-        figures.bytes = write_checked(file, tin, frame_.reference(), format_, looks(tin, w));
-        file.commit();
+        figures.kept = tin.kept;
+        if (!written) return {};
+        figures.samples = samples_->count(tile, w, tin.deviation.by_sample);
+        figures.bytes = write(tile, w, tin);
         return {};
     }
 
-    [[noreturn]] void refuse_bound(double possible) const {
-        throw Error(Fault::bad_usage, "--max-deviation",
-                    four_digits(*command_.max_deviation) + " m cannot be kept in such tiles, which round",
-                    four_digits(possible) + " m or more, or --format ply");
-    }
-
-    planet::MeshLooks looks(const WrittenTin& tin, const TileWindow& w) const {
-        planet::MeshLooks looks;
-        if (format_ != MeshFormat::glb) return looks;
-        looks.normals = normals_of(tin.surface);
-        std::vector<std::size_t> vertices;  // on the border: neighbours must agree
-        std::vector<glm::ivec2> samples;
-        for (std::size_t v = 0; v < tin.mesh.vertices.size(); ++v) {
-            const glm::ivec2 p = tin.mesh.vertices[v], last = w.high - w.low;
-            if (p.x != 0 && p.y != 0 && p.x != last.x && p.y != last.y) continue;
-            vertices.push_back(v);
-            samples.push_back(p + w.low - w.first);
-        }
-        const std::vector<glm::vec3> ground = ground_normals(w.window, frame_.window(w.first), samples);
-        for (std::size_t i = 0; i < vertices.size(); ++i) looks.normals[vertices[i]] = ground[i];
-        Drape::Part part;
-        if (drape_) {
-            const glm::dvec2 a = map_.at(glm::dvec2(w.low)), b = map_.at(glm::dvec2(w.high));
-            part = drape_->part(glm::min(a, b), glm::max(a, b));
-        }
-        looks.uv = texture_coordinates(tin.mesh.vertices, w.low, map_, part);
-        looks.picture = std::move(part.bytes);
-        return looks;
-    }
-
-    // ---- samples, each counted once ----
-
-    /// Whether a tile has a triangle at a sample: a unit square of it there has three valid corners, the sample one of them.
-    bool covers(std::size_t tile, glm::ivec2 p, const TileWindow& w) const {
-        const glm::ivec2 low = tiling_.low(tile), high = tiling_.high(tile);
-        const auto valid = [&](int x, int y) { return w.window.valid(glm::ivec2(x, y) - w.first); };
-        for (int y = std::max(low.y, p.y - 1); y < std::min(high.y, p.y + 1); ++y)
-            for (int x = std::max(low.x, p.x - 1); x < std::min(high.x, p.x + 1); ++x)
-                if (valid(x, y) + valid(x + 1, y) + valid(x, y + 1) + valid(x + 1, y + 1) >= 3) return valid(p.x, p.y);
-        return false;
-    }
-
-    /// A sample on a border counts in the last tile that covers it; one that none does, in the last that has it.
-    void count_samples(std::size_t tile, const TileWindow& w, const std::vector<float>& deviation,
-                       TileFigures& figures) {
-        std::size_t i = 0;
-        for (int y = w.low.y; y <= w.high.y; ++y)
-            for (int x = w.low.x; x <= w.high.x; ++x, ++i) {
-                const double d = deviation.empty() ? std::nan("") : static_cast<double>(deviation[i]);
-                const bool on_border = x == w.low.x || y == w.low.y || x == w.high.x || y == w.high.y;
-                if (on_border && !counts_here(tile, {x, y}, !std::isnan(d), w)) continue;
-                count({x, y}, d, w, figures);
-                const bool next_tiles = (x == w.high.x && x < end_.x) || (y == w.high.y && y < end_.y);
-                if (error_grid_ && next_tiles && !std::isnan(d)) keep_deviation({y, x}, deviation[i]);
-            }
-        write_deviations(w, deviation);
-    }
-    bool counts_here(std::size_t tile, glm::ivec2 p, bool covered, const TileWindow& w) const {
-        for (const std::size_t other : tiles_at(p)) {
-            if (other == tile) continue;
-            if (covers(other, p, w) ? other > tile || !covered : other > tile && !covered) return false;
-        }
-        return true;
-    }
-    static void count(glm::ivec2 p, double deviation, const TileWindow& w, TileFigures& figures) {
-        if (!w.window.valid(p - w.first)) {
-            ++figures.voids;
-        } else if (std::isnan(deviation)) {
-            ++figures.uncovered;
-        } else {
-            ++figures.samples;
-            figures.squares += deviation * deviation;
-        }
-    }
-    /// Of a sample that the next tile has too, but no triangle at it.
-    void keep_deviation(Sample p, float deviation) {
-        const std::lock_guard lock(error_grid_mutex_);
-        kept_deviations_[p] = deviation;
-    }
-    void finish_error_grid() {
-        if (!error_grid_) return;
-        for (const auto& [p, deviation] : kept_deviations_)
-            error_grid_->write({p.second, p.first, 1, 1}, std::span(&deviation, 1));
-        error_grid_->finish();
-    }
-    void write_deviations(const TileWindow& w, const std::vector<float>& deviation) {
-        if (!error_grid_) return;
-        const glm::ivec2 size = w.high - w.low + 1;
-        const planet::SampleWindow own{w.low.x, w.low.y, size.x - (w.high.x < end_.x), size.y - (w.high.y < end_.y)};
-        std::vector<float> samples;
-        for (int y = 0; y < own.rows && !deviation.empty(); ++y) {
-            const auto row = deviation.begin() + std::ptrdiff_t{y} * size.x;
-            samples.insert(samples.end(), row, row + own.columns);
-        }
-        samples.resize(own.count(), std::nanf(""));
-        const std::lock_guard lock(error_grid_mutex_);
-        error_grid_->write(own, samples);
-    }
-
-    // ---- the tiling ----
-
-    std::vector<std::size_t> tiles_at(glm::ivec2 p) const {
-        std::vector<std::size_t> tiles;
-        const int step = command_.tile;
-        for (int row = std::max(0, (p.y - 1) / step); row <= std::min(tiling_.rows() - 1, p.y / step); ++row)
-            for (int column = std::max(0, (p.x - 1) / step); column <= std::min(tiling_.columns() - 1, p.x / step);
-                 ++column)
-                tiles.push_back(static_cast<std::size_t>(row) * static_cast<std::size_t>(tiling_.columns()) +
-                                static_cast<std::size_t>(column));
-        return tiles;
-    }
-    std::vector<std::size_t> tiles_with(const std::set<Sample>& samples) const {
-        std::set<std::size_t> tiles;
-        for (const auto& [y, x] : samples)
-            for (const std::size_t tile : tiles_at({x, y})) tiles.insert(tile);
-        return {tiles.begin(), tiles.end()};
+    /// @return bytes
+    std::size_t write(std::size_t tile, const TileWindow& w, const WrittenTin& tin) const {
+        const std::string name = name_of(tile);
+        if (tin.rounding.step != maker_.grid_step())
+            throw Error(Fault::check_failed, name, "does not lie on the grid that all tiles share");
+        if (command_.base) check_closed(tin.surface, maker_.frame().reference().frame);
+        OutputFile file("--output", folder_.path() / name, *command_.output / name);
+        const std::size_t bytes =
+            write_checked(file, tin, maker_.frame().reference(), command_.tile_format, maker_.looks(tin, w));
+        file.commit();
+        return bytes;
     }
 
     std::string name_of(std::size_t tile) const {
@@ -332,54 +217,42 @@ class TileMaker {
         };
         constexpr const char* endings[] = {".glb", ".ply", ".obj", ".stl"};
         return "row" + number(tile / columns, tiling_.rows() - 1) + "_column" +
-               number(tile % columns, tiling_.columns() - 1) + endings[static_cast<std::size_t>(format_)];
+               number(tile % columns, tiling_.columns() - 1) + endings[static_cast<std::size_t>(command_.tile_format)];
     }
 
     // ---- what is told ----
 
-    void total() {
-        for (const TileFigures& f : figures_) {
-            all_.triangles += f.triangles;
-            all_.vertices += f.vertices;
-            all_.bytes += f.bytes;
-            all_.samples += f.samples;
-            all_.uncovered += f.uncovered;
-            all_.voids += f.voids;
-            all_.mended += f.mended;
-            all_.squares += f.squares;
-            all_.max = std::max(all_.max, f.max);
-            all_.angle = std::min(all_.angle, f.angle);
-            written_ += f.triangles > 0;
-        }
-        if (written_ == 0) refuse_void();
+    double rms() const { return std::sqrt(all_.samples.squares / static_cast<double>(all_.samples.covered)); }
+    std::size_t tiles_written() const {
+        return static_cast<std::size_t>(std::ranges::count_if(figures_, [](const auto& f) { return f.triangles > 0; }));
     }
-    double rms() const { return std::sqrt(all_.squares / static_cast<double>(all_.samples)); }
 
     void fill_report() {
-        constexpr std::string_view frames[] = {"source", "utm", "enu", "ecef"};
-        const planet::MeshReference& reference = frame_.reference();
-        report_.set("tiles", written_);
-        report_.set("tiles_void", tiling_.count() - written_);
+        report_.set("tiles", tiles_written());
+        report_.set("tiles_void", tiling_.count() - tiles_written());
         report_.set("tile_rows", tiling_.rows());
         report_.set("tile_columns", tiling_.columns());
         report_.set("tile_samples", command_.tile);
         report_.set("tiles_remade", remade_);
-        report_.set("triangles", all_.triangles);
+        report_.set("triangles", all_.written_triangles);
         report_.set("vertices", all_.vertices);
-        report_.set("frame", frames[static_cast<std::size_t>(reference.frame)]);
-        report_.set("crs", reference.crs);
-        report_.set("vertical_datum", reference.vertical_datum);
+        report_reference(maker_.frame().reference(), report_);
         report_.set("deviation_max_m", all_.max);
         report_.set("deviation_rms_m", rms());
-        report_.set("tolerance_m", *command_.max_deviation);
-        report_.set("stopped_by", "deviation");
+        if (command_.max_deviation) report_.set("tolerance_m", *command_.max_deviation);
+        report_.set("stopped_by", stopped_by());
         report_.set("angle_min_deg", all_.angle / planet::degrees);
-        report_.set("samples", all_.samples);
-        report_.set("samples_uncovered", all_.uncovered);
-        report_.set("samples_void", all_.voids);
-        report_.set("samples_mended", all_.mended + inserted_.size());
-        report_.set("rounding_step", grid_step_);
+        report_.set("samples", all_.samples.covered);
+        report_.set("samples_uncovered", all_.samples.uncovered);
+        report_.set("samples_void", all_.samples.voids);
+        report_.set("samples_mended", all_.mended + shared_);
+        report_.set("rounding_step", maker_.grid_step());
         report_.set("exaggeration", command_.exaggeration);
+        if (command_.base) {
+            report_.set("base_m", *command_.base);
+            report_.set("closed", true);
+        }
+        if (!command_.features.empty()) report_features(all_.features, features_outside_, report_);
         report_.set("output", command_.output->string());
         report_.set("output_bytes", all_.bytes);
         if (command_.error_grid) report_.set("error_grid", command_.error_grid->string());
@@ -388,41 +261,37 @@ class TileMaker {
         report_.set("rows", tiling_.height());
     }
 
+    std::string stopped_by() const { return by_budget_ ? "triangles" : "deviation"; }
+
     void tell() {
         progress_.clear();
-        std::cout << grouped(written_) << " tiles of " << grouped(all_.triangles) << " triangles; deviation at most "
-                  << four_digits(all_.max) << " m, rms " << four_digits(rms()) << " m over " << grouped(all_.samples)
-                  << " samples\n";
+        std::cout << grouped(tiles_written()) << " tiles of " << grouped(all_.written_triangles)
+                  << " triangles; deviation at most " << four_digits(all_.max) << " m, rms " << four_digits(rms())
+                  << " m over " << grouped(all_.samples.covered) << " samples; stopped by the " << stopped_by() << "\n";
     }
 
     const TinCommand& command_;
     Report& report_;
     Progress progress_;
-    const MeshFormat format_;
     OutputFolder folder_;
     const TinSource source_;
-    const planet::RasterFrame frame_;
-    std::optional<planet::RasterFrame> tangent_;
-    const planet::TinTiling tiling_;
-    const glm::ivec2 end_;  ///< the last sample
-    const DrapeMap map_;
-    std::optional<Drape> drape_;
+    TileMaker maker_;
+    const planet::TinTiling& tiling_;
     std::unique_ptr<planet::RasterWriter> error_grid_;
-    std::mutex error_grid_mutex_;
-    std::map<Sample, float> kept_deviations_;
-
-    double grid_step_ = 0, rounding_ = 0;
-    double scale_ = 1;           ///< of the tolerance, for heights above a plane
-    std::set<Sample> inserted_;  ///< on borders; changes between passes only
+    std::optional<TileSamples> samples_;
+    Needs needs_;  ///< of features and poles
+    std::size_t features_outside_ = 0;
+    bool by_budget_ = false;  ///< else by the deviation
     std::vector<TileFigures> figures_;
     TileFigures all_;
-    std::size_t written_ = 0, remade_ = 0;
+    std::size_t remade_ = 0;  ///< tiles
+    std::size_t shared_ = 0;  ///< samples on borders that tiles asked for
 };
 
 }  // namespace
 
 void tin_tiles(const TinCommand& command, Report& report) {
-    TileMaker(command, report).run();
+    TinFolder(command, report).run();
 }
 
 }  // namespace render

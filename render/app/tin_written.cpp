@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "planet/error.h"
+#include "planet/mesh/surface_check.h"
 #include "planet/patches/patch_mesh.h"
 #include "planet/tin/tin_solid.h"
+#include "render/app/raster_frames.h"
 #include "render/app/tin_source.h"
 
 namespace render {
@@ -17,40 +19,16 @@ using planet::Fault;
 using planet::HeightGrid;
 using planet::RasterFrame;
 
-bool is_nowhere(const glm::dvec3& p) {
-    return std::isnan(p.x + p.y);
-}
-
-/// Where the floor of a solid lies below samples: flat where up is z, else so high above the ellipsoid.
-class Floor {
-  public:
-    Floor(const HeightGrid& grid, const RasterFrame& frame, double base) : frame_(frame) {
-        height_ = height_range(grid).x - base;
-        if (frame.reference().frame == planet::MeshFrame::ecef || !curves(frame)) return;
-        const HeightGrid z = planet::heights_above_tangent_plane(grid, frame);
-        level_ = height_range(z).x - base * frame.exaggeration();
+void close_below(planet::SurfaceMesh& surface, const planet::TinSolid& solid, const TinFloor& floor,
+                 const RasterFrame& frame) {
+    for (const glm::ivec2 sample : solid.floor) {
+        const glm::dvec2 at(sample);
+        glm::dvec3& place = surface.vertices.emplace_back();
+        frame.place({&at, 1}, {&floor.height, 1}, {&place, 1}, {});
+        if (floor.z) place.z = *floor.z;
     }
-
-    void append_places(const std::vector<glm::ivec2>& below, std::vector<glm::dvec3>& places) const {
-        for (const glm::ivec2 sample : below) {
-            const glm::dvec2 at(sample);
-            glm::dvec3& place = places.emplace_back();
-            frame_.place({&at, 1}, {&height_, 1}, {&place, 1}, {});
-            if (level_) place.z = *level_;
-        }
-    }
-
-  private:
-    const RasterFrame& frame_;
-    double height_;
-    std::optional<double> level_{};
-};
-
-void close_below(WrittenTin& tin, const planet::TinSolid& solid, const Floor& floor, bool mirrored) {
-    planet::SurfaceMesh& surface = tin.surface;
-    floor.append_places(solid.floor, surface.vertices);
     for (auto t : solid.below) {
-        if (mirrored) std::swap(t[1], t[2]);
+        if (frame.mirrored()) std::swap(t[1], t[2]);
         surface.triangles.push_back(t);
     }
     surface.level.resize(surface.triangles.size(), 0);
@@ -61,9 +39,7 @@ void close_below(WrittenTin& tin, const planet::TinSolid& solid, const Floor& fl
 class Certifier {
   public:
     Certifier(const HeightGrid& grid, const RasterFrame& frame, const TinGoal& goal)
-        : grid_(grid), frame_(frame), goal_(goal) {
-        if (goal.base) floor_.emplace(grid, frame, *goal.base);
-    }
+        : grid_(grid), frame_(frame), goal_(goal) {}
 
     /// All triangles are measured at first and in the end; between, those that mending has made.
     WrittenTin run(planet::TinMesh mesh) {
@@ -98,10 +74,9 @@ class Certifier {
 
     Findings look(const planet::TinMesh& mesh, const planet::WrittenDeviation& deviation) const {
         Findings found;
-        const double bound = goal_.tolerance + tin_measuring_slack_m - grid_.sample_rounding();
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            if (!(deviation.by_triangle[i] > bound)) {
-                if (std::isfinite(bound)) found.within.push_back(key(mesh, i));
+            if (!(deviation.by_triangle[i] + grid_.sample_rounding() > goal_.tolerance)) {
+                if (std::isfinite(goal_.tolerance)) found.within.push_back(key(mesh, i));
                 continue;
             }
             ++found.too_far;
@@ -162,14 +137,13 @@ class Certifier {
             throw Error(Fault::bad_data, "the TIN", "no triangle has three valid corners",
                         "three valid samples side by side");
         std::optional<planet::TinSolid> solid;
-        if (floor_) {
+        if (goal_.floor) {
             solid = planet::solid_below(std::move(tin.mesh), {grid_.width() - 1, grid_.height() - 1});
             tin.mesh = solid->top;
         }
         tin.surface = planet::surface_from_tin(tin.mesh, grid_, frame_);
-        if (solid) close_below(tin, *solid, *floor_, frame_.mirrored());
-        if (std::ranges::any_of(tin.surface.vertices, is_nowhere))
-            throw Error(Fault::bad_usage, "--frame", "does not reach all of the raster", "another frame, e.g. source");
+        if (solid) close_below(tin.surface, *solid, *goal_.floor, frame_);
+        if (std::ranges::any_of(tin.surface.vertices, is_nowhere)) refuse_reach("the raster");
         tin.rounding = planet::round_to_format(tin.surface, frame_.reference(), goal_.format, goal_.least_step);
     }
 
@@ -180,7 +154,6 @@ class Certifier {
     const HeightGrid& grid_;
     const RasterFrame& frame_;
     const TinGoal& goal_;
-    std::optional<Floor> floor_;
 };
 
 void compare(const std::string& path, planet::MeshFormat format, const planet::SurfaceMesh& measured) {
@@ -194,8 +167,22 @@ void compare(const std::string& path, planet::MeshFormat format, const planet::S
 
 }  // namespace
 
+TinFloor floor_below(const HeightGrid& grid, const RasterFrame& frame, double base) {
+    TinFloor floor{height_range(grid).x - base, {}};
+    if (frame.reference().frame == planet::MeshFrame::enu && curves(frame))
+        floor.z = height_range(planet::heights_above_tangent_plane(grid, frame)).x - base * frame.exaggeration();
+    return floor;
+}
+
 WrittenTin as_written(planet::TinMesh mesh, const HeightGrid& grid, const RasterFrame& frame, const TinGoal& goal) {
     return Certifier(grid, frame, goal).run(std::move(mesh));
+}
+
+long check_closed(const planet::SurfaceMesh& solid, planet::MeshFrame frame) {
+    const planet::SurfaceCheck found = planet::check(solid, frame);
+    if (found.border_sides + found.wrong_sides + found.degenerate + found.unused_vertices > 0)
+        throw Error(Fault::check_failed, "the solid", "is not closed: " + found.summary());
+    return found.euler();
 }
 
 std::size_t write_checked(OutputFile& file, const WrittenTin& tin, const planet::MeshReference& reference,

@@ -11,8 +11,13 @@
 
 namespace render {
 
-/// Sums of doubles may be off by this much where the mesh is exact.
-inline constexpr double tin_measuring_slack_m = 1e-6;
+/// Where the floor of a solid lies.
+struct TinFloor {
+    double height = 0;          ///< m, as heights are
+    std::optional<double> z{};  ///< of an enu frame that curves, instead: so that it is flat
+};
+/// @param base m below the lowest sample @param frame of the grid's window
+TinFloor floor_below(const planet::HeightGrid& grid, const planet::RasterFrame& frame, double base);
 
 struct TinGoal {
     double tolerance = std::numeric_limits<double>::infinity();  ///< m
@@ -24,7 +29,7 @@ struct TinGoal {
     bool by_sample = false;  ///< the deviation of every sample, too
     /// Samples on the border of the grid are not inserted but listed: a neighbour has them too.
     bool border_is_shared = false;
-    std::optional<double> base{};       ///< m of height: closes the mesh to a solid, with a floor so far below
+    std::optional<TinFloor> floor{};    ///< closes the mesh to a solid
     planet::TinFeatures features = {};  ///< that the mesh was made with
 };
 
@@ -44,6 +49,9 @@ struct WrittenTin {
 /// Throws planet::Error(bad_data) if there is no triangle, bad_usage if the frame does not reach all of them.
 WrittenTin as_written(planet::TinMesh mesh, const planet::HeightGrid& grid, const planet::RasterFrame& frame,
                       const TinGoal& goal);
+
+/// Throws planet::Error(check_failed) for a solid that is not. @return V - E + F
+long check_closed(const planet::SurfaceMesh& solid, planet::MeshFrame frame);
 
 /// Writes what was measured, reads the file again, and compares: what holds of the one holds of the other.
 /// Throws planet::Error: bad_usage if it cannot be written, check_failed if the file differs. @return bytes

@@ -170,6 +170,18 @@ PictureSize parse_size(std::string_view where, std::string_view text) {
     return {static_cast<std::int32_t>(*width), static_cast<std::int32_t>(*height)};
 }
 
+PictureCrop parse_crop(std::string_view where, std::string_view text) {
+    const auto first = text.find(','), second = first == text.npos ? first : text.find(',', first + 1);
+    if (second == text.npos)
+        throw Error(Fault::bad_usage, where, shown(text) + " is not a part of a picture",
+                    "X,Y,WIDTHxHEIGHT in pixels from the top left, as 1000,200,640x480");
+    const auto place = [&](std::string_view number) {
+        return static_cast<std::int32_t>(parse_whole(where, number, 0, picture_side_max - 1));
+    };
+    const PictureSize size = parse_size(where, text.substr(second + 1));
+    return {place(text.substr(0, first)), place(text.substr(first + 1, second - first - 1)), size.width, size.height};
+}
+
 std::size_t parse_choice(std::string_view where, std::string_view text, const std::vector<std::string_view>& names) {
     const auto found = std::find(names.begin(), names.end(), trimmed(text));
     if (found == names.end()) throw Error(Fault::bad_usage, where, shown(text) + " is unknown", joined(names));

@@ -49,6 +49,14 @@ inline constexpr int picture_side_max = 65535;  ///< pixels
 /// "1920x1080", each side 1..picture_side_max.
 PictureSize parse_size(std::string_view where, std::string_view text);
 
+/// A rectangle of a picture, pixels from its top left.
+struct PictureCrop {
+    std::int32_t x = 0, y = 0, width = 0, height = 0;
+};
+
+/// "1000,200,640x480": X,Y,WIDTHxHEIGHT.
+PictureCrop parse_crop(std::string_view where, std::string_view text);
+
 /// One of the names; returns its index.
 std::size_t parse_choice(std::string_view where, std::string_view text, const std::vector<std::string_view>& names);
 

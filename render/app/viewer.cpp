@@ -254,10 +254,7 @@ void ViewerSession::draw() {
         picture_new_ = true;
     } else if (complete && (!frame_.settled() || changed)) {
         if (changed || !started_still_) {
-            const int most = std::min(4, stage_.context.limits().samples);
-            frame_.begin_settled(render_.samples > 0                              ? render_.samples
-                                 : looks_.from_afar(camera, render_.exaggeration) ? 1
-                                                                                  : most);
+            frame_.begin_settled(looks_.samples(render_, camera, stage_.context.limits().samples));
             started_still_ = true;
         }
         picture_new_ = frame_.draw_settled(looks_, frame, still_budget_s);

@@ -1,11 +1,11 @@
 #pragma once
-// A flight from one view to another: out, across and in again, the smoothest way for the eye. After van Wijk and Nuij,
-// "Smooth and efficient zooming and panning" (2003): of all paths in ground distance u and range w, the one along which
-// the picture flows least.
+// A flight from one view to another: out, across and in again, the smoothest way for the eye.
 
 #include <glm/glm.hpp>
 
 #include "render/viewer/camera.h"
+#include "render/viewer/great_circle.h"
+#include "render/viewer/zoom_pan.h"
 
 namespace render {
 
@@ -33,8 +33,8 @@ class Flight {
   private:
     Sight from_, to_;
     double duration_ = 0;
-    double ground_m_ = 0;         ///< between the places
-    double r0_ = 0, length_ = 0;  ///< of van Wijk and Nuij's path
+    GreatCircle ground_;
+    ZoomPan way_;
 };
 
 }  // namespace render

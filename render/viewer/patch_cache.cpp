@@ -42,6 +42,7 @@ void PatchCache::work() {
         Levels levels = make_relief_patch(code, surface_, radius_m_);
         lock.lock();
         made_.push_back({code, std::move(levels)});
+        done_.notify_all();
     }
 }
 
@@ -76,6 +77,11 @@ void PatchCache::take_in(const Made& made) {
     for (int level = 0; level < texture_.levels(); ++level)
         texture_.upload_layer(level, layer, bytes_of(made.levels[static_cast<std::size_t>(level)]));
     kept_.emplace(made.code.bits(), Kept{layer, frame_});
+}
+
+void PatchCache::wait() {
+    std::unique_lock lock(mutex_);
+    done_.wait(lock, [this] { return !made_.empty() || (wanted_.empty() && in_the_making_.empty()); });
 }
 
 bool PatchCache::update(const planet::Segments& segments, bool segments_changed, std::size_t most) {

@@ -26,6 +26,9 @@ class PatchCache {
     /// has changed.
     bool update(const planet::Segments& segments, bool segments_changed, std::size_t most);
 
+    /// Waits until update() has something to take in, if anything is being made.
+    void wait();
+
     /// By segment: the layer of its patch, or -1 while there is none.
     std::span<const std::int32_t> layers() const { return layers_; }
     /// Of the last update's segments.
@@ -59,7 +62,7 @@ class PatchCache {
     std::uint64_t frame_ = 0;
 
     std::mutex mutex_;
-    std::condition_variable wake_;
+    std::condition_variable wake_, done_;
     std::vector<planet::LocationCode> wanted_;  // the next one last
     std::unordered_set<std::uint64_t> in_the_making_;
     std::vector<Made> made_;

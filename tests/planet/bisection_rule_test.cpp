@@ -95,5 +95,20 @@ TEST(BisectionRule, LongestFirstNeverPropagates) {
         }
 }
 
+// Of a triangle with |BC| = |CC'| one half is split long before the other, and its quarter waits for its turn with a side on
+// the border: nothing is beyond it that could be fetched ahead.
+TEST(BisectionRule, QuartersAtTheBorderWaitTheirTurn) {
+    for (const double x : {0.749, 0.75, 0.751}) {
+        const PlainMesh base = one_triangle(x, 0.5);
+        Bisection mesh(base);
+        RefineGoal goal;
+        goal.max_triangles = 3000;
+        mesh.refine(goal);
+        EXPECT_GE(mesh.triangle_count(), 2999u);
+        EXPECT_EQ(mesh.check(), "");
+        EXPECT_EQ(conforming(mesh.mesh(), base), "");
+    }
+}
+
 }  // namespace
 }  // namespace planet

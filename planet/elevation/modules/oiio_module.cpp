@@ -86,6 +86,9 @@ class OiioSink : public ImageSink {
         if (d.format == "png") spec.attribute("png:compressionLevel", d.options.png_compression);
         if (d.format == "jpg") spec.attribute("Compression", "jpeg:" + std::to_string(d.options.jpeg_quality));
         if (d.format == "tif" || d.format == "exr") spec.attribute("Compression", "zip");
+        // Offsets of 32 bits reach 4 GiB; what does not compress grows.
+        constexpr OIIO::imagesize_t classic_tiff_bytes = 3'900'000'000;
+        if (d.format == "tif" && spec.image_bytes() > classic_tiff_bytes) spec.attribute("tiff:bigtiff", 1);
         check(output_->open(d.file, spec));
     }
 

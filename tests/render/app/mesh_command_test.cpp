@@ -1,44 +1,24 @@
 // `octaglobe mesh` as a user runs it: its files are read back and measured the slow way (slow_deviation.h), and compared
 // with what the report says. What it refuses is in mesh_refusal_test.cpp.
 
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <regex>
 #include <set>
 
 #include "planet/elevation/image_io.h"
-#include "tests/render/app/program_process.h"
+#include "tests/render/app/command_report.h"
 #include "tests/render/app/slow_deviation.h"
 
 namespace render {
 namespace {
 
-using Json = nlohmann::json;
 using planet::SurfaceMesh;
 
-class MeshCommand : public testing::Test {
+class MeshCommand : public CommandTest {
   protected:
     /// octaglobe mesh ARGUMENTS; its report.
-    Json mesh(const std::string& arguments) {
-        outcome_ = run(folder_.path(), words("mesh " + arguments + " --json report.json"));
-        EXPECT_EQ(outcome_.status, 0) << arguments << ": " << outcome_.err;
-        EXPECT_EQ(outcome_.err, "");
-        if (outcome_.status != 0) return {};
-        return Json::parse(content(folder_ / "report.json"));
-    }
-    SurfaceMesh read(const char* name, planet::MeshReference* reference = nullptr) const {
-        return planet::read_mesh((folder_ / name).string(), reference);
-    }
-
-    const ScratchFolder folder_;
-    Outcome outcome_;
+    Json mesh(const std::string& arguments) { return report_of("mesh " + arguments); }
 };
-
-double number(const Json& report, const char* key) {
-    return report.at(key).get<double>();
-}
 
 /// Of triangles that turn the wrong way, seen from above: from +z, or in ecef from outside.
 std::size_t turned_down(const SurfaceMesh& mesh, bool ecef) {
@@ -85,7 +65,6 @@ class MeshFiles : public MeshCommand, public testing::WithParamInterface<Written
 
 TEST_P(MeshFiles, KeepTheBoundAndSayHowWell) {
     const auto& [file, frame, rows_north] = GetParam();
-    const bool source = frame == std::string("source");
     Terrain terrain = hilly_terrain();
     if (rows_north) terrain.step_y = -terrain.step_y;
     terrain.write(folder_ / "dem.vrt");
@@ -98,14 +77,8 @@ TEST_P(MeshFiles, KeepTheBoundAndSayHowWell) {
     const SurfaceMesh written = read(file);
     expect_counts(written, report);
     EXPECT_EQ(report.at("frame"), frame);
-    const SlowDeviation slow =
-        source ? slow_deviation_in_source(written, terrain) : slow_deviation_in_space(written, reference, terrain);
-    EXPECT_EQ(slow.uncovered, 0u);
-    EXPECT_EQ(slow.samples, report.at("samples"));
+    expect_as_reported(written, reference, terrain, report);
     EXPECT_LE(number(report, "deviation_max_m"), 20 + 1e-6);
-    // In space a sample on a side may lie over either triangle.
-    EXPECT_NEAR(slow.max, number(report, "deviation_max_m"), source ? 1e-6 : 0.05);
-    EXPECT_NEAR(slow.rms, number(report, "deviation_rms_m"), source ? 1e-6 : 0.01);
     EXPECT_EQ(turned_down(written, frame == std::string("ecef")), 0u);
 }
 

@@ -2,8 +2,11 @@
 // How far a written mesh is from the samples of its raster, found the slow way: for each sample every triangle is tried.
 // Nothing here knows of lattices, patches or frames of the library.
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "planet/exporters/mesh_file.h"
@@ -91,6 +94,20 @@ inline SlowDeviation slow_deviation_in_space(planet::SurfaceMesh mesh, const pla
     return slow_deviation(mesh, terrain, 0.05, [&](int column, int row) {
         return foot_and_normal(terrain.x + column * terrain.step_x, terrain.y + row * terrain.step_y);
     });
+}
+
+/// What a command reports of a mesh of a terrain above the ellipsoid is what is found the slow way.
+/// @param reference of the frame: an .stl does not tell its own
+inline void expect_as_reported(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference,
+                               const Terrain& terrain, const nlohmann::json& report) {
+    const bool source = report.at("frame") == "source";
+    const SlowDeviation slow =
+        source ? slow_deviation_in_source(mesh, terrain) : slow_deviation_in_space(mesh, reference, terrain);
+    EXPECT_EQ(slow.uncovered, 0u);
+    EXPECT_EQ(slow.samples, report.at("samples"));
+    // In space a sample on a side may lie over either triangle.
+    EXPECT_NEAR(slow.max, report.at("deviation_max_m").get<double>(), source ? 1e-6 : 0.05);
+    EXPECT_NEAR(slow.rms, report.at("deviation_rms_m").get<double>(), source ? 1e-6 : 0.01);
 }
 
 }  // namespace render

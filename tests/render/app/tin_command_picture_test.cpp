@@ -31,7 +31,7 @@ TEST_F(TinPictureCommand, TheGpuMeasureKeepsTheBoundAndSaysItsStep) {
     if (there.status == 4) GTEST_SKIP() << there.err;
     ASSERT_EQ(there.status, 0) << there.err;
     const Json drawn = Json::parse(content(folder_ / "g.json"));
-    EXPECT_LE(number(drawn, "deviation_max_m"), 20 + tin_measuring_slack_m);
+    EXPECT_LE(number(drawn, "deviation_max_m"), 20);
     EXPECT_GT(number(drawn, "depth_step_m"), 0);
     const Json local = tin("dem.vrt --max-deviation 20 --metric local --locate cells -o local.ply");
     EXPECT_NEAR(number(drawn, "triangles"), number(local, "triangles"), 0.05 * number(local, "triangles"));

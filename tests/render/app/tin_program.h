@@ -1,41 +1,19 @@
 #pragma once
 // Runs `octaglobe tin` as a user does, for the tests of its parts.
 
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 
-#include "planet/exporters/mesh_file.h"
-#include "tests/render/app/program_process.h"
+#include "tests/render/app/command_report.h"
 #include "tests/render/app/terrain_files.h"
 
 namespace render {
 
-using Json = nlohmann::json;
-
-class TinCommandTest : public testing::Test {
+class TinCommandTest : public CommandTest {
   protected:
     /// octaglobe tin ARGUMENTS; its report.
-    Json tin(const std::string& arguments) {
-        outcome_ = run(folder_.path(), words("tin " + arguments + " --json report.json"));
-        EXPECT_EQ(outcome_.status, 0) << arguments << ": " << outcome_.err;
-        EXPECT_EQ(outcome_.err, "");
-        if (outcome_.status != 0) return {};
-        return Json::parse(content(folder_ / "report.json"));
-    }
-    planet::SurfaceMesh read(const std::string& name, planet::MeshReference* reference = nullptr) const {
-        return planet::read_mesh((folder_.path() / name).string(), reference);
-    }
-
-    const ScratchFolder folder_;
-    Outcome outcome_;
+    Json tin(const std::string& arguments) { return report_of("tin " + arguments); }
 };
-
-inline double number(const Json& report, const char* key) {
-    return report.at(key).get<double>();
-}
 
 /// Sides of one triangle only; fails where one has more than two, or two that turn against each other.
 inline std::size_t open_sides(const planet::SurfaceMesh& mesh) {
