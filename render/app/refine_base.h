@@ -16,7 +16,8 @@ struct RefineMeaning {
     glm::dvec2 metres_per_unit{1};
     /// An .stl of ours: metres east, north and up of a place that its header has no room for.
     bool somewhere_local = false;
-    /// Its file is Earth-centred, and it is, or local: a planet or a part of one, without a plan. ecef = origin + ecef_from_enu p.
+    /// Earth-centred, or local from an Earth-centred file: a planet or a part of one, without a plan. Places are
+    /// ecef = origin + ecef_from_enu p.
     bool round = false;
     bool normals = false, uv = false, colors = false;  ///< which attributes vertices have, in this order
 
