@@ -24,16 +24,16 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
                 "a mesh of frame enu, ecef or utm, or in EPSG:4326");
 }
 
-/// 326zz and 327zz: the zone, and whether it is a northern one.
+/// 326zz and 327zz: the zone, 0 for UPS (61), and whether it is a northern one.
 std::pair<int, bool> utm_zone(const std::string& crs, std::string_view where) {
     int code = 0;
     if (!crs.starts_with("EPSG:")) refuse(crs, where);
     const auto [end, failed] = std::from_chars(crs.data() + 5, crs.data() + crs.size(), code);
     const int zone = code % 100;
     if (failed != std::errc{} || end != crs.data() + crs.size() || (code / 100 != 326 && code / 100 != 327) ||
-        zone < 1 || zone > 60)
+        zone < 1 || zone > 61)
         refuse(crs, where);
-    return {zone, code / 100 == 326};
+    return {zone % 61, code / 100 == 326};
 }
 
 }  // namespace
@@ -78,7 +78,8 @@ glm::dvec3 MeshPlaces::in_mesh(const Geodetic& place) const try {
     if (reference_.geographic)
         return {place.longitude / planet::degrees, place.latitude / planet::degrees, place.h.m - N};
     const planet::Utm utm = planet::utm_from_geodetic(place, zone_);
-    return {utm.easting, utm.northing + (utm.north == north_ ? 0 : north_ ? -1e7 : 1e7), place.h.m - N};
+    const double across = utm.north == north_ ? 0 : zone_ == 0 ? nan : north_ ? -1e7 : 1e7;
+    return {utm.easting, utm.northing + across, place.h.m - N};
 } catch (const Error&) {
     return glm::dvec3(nan);
 }

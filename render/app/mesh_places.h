@@ -28,7 +28,7 @@ class MeshPlaces {
 
     planet::MeshReference reference_;
     std::shared_ptr<const planet::Geoid> geoid_;
-    int zone_ = 0;  ///< of UTM
+    int zone_ = 0;  ///< of UTM; 0: UPS
     bool north_ = true;
 };
 

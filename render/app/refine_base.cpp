@@ -78,6 +78,7 @@ RefineBase read_refine_base(const std::string& path, bool weld, const std::optio
         change.apply(mesh, looks);
         base.meaning = meaning_of(mesh, change.reference(), looks);
     }
+    base.meaning.round = wanted == MeshFrame::ecef || (wanted == MeshFrame::enu && reference.frame == MeshFrame::ecef);
     base.picture = std::move(looks.picture);
     base.mesh.attribute_width = width_of(base.meaning);
     base.mesh.attributes.reserve(base.mesh.attribute_width * mesh.vertices.size());

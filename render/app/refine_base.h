@@ -16,6 +16,9 @@ struct RefineMeaning {
     glm::dvec2 metres_per_unit{1};
     /// An .stl of ours: metres east, north and up of a place that its header has no room for.
     bool somewhere_local = false;
+    /// Earth-centred, or local from an Earth-centred file: a planet or a part of one, without a plan. Places are
+    /// ecef = origin + ecef_from_enu p.
+    bool round = false;
     bool normals = false, uv = false, colors = false;  ///< which attributes vertices have, in this order
 
     glm::dvec3 in_file(const glm::dvec3& p) const { return {p.x / metres_per_unit.x, p.y / metres_per_unit.y, p.z}; }

@@ -40,14 +40,6 @@ double area_from_sides(std::array<double, 3> s) {
     return 0.25 * std::sqrt(std::max(0.0, (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))));
 }
 
-/// Above the middle of a side of an Earth-centred mesh, as high above the ellipsoid as its ends are in the mean: on the
-/// chord a planet would stay the solid that it was.
-glm::dvec3 between_heights(const glm::dvec3& a, const glm::dvec3& b) {
-    const auto height = [](const glm::dvec3& p) { return planet::height_from_ecef(planet::wgs84, p).m; };
-    const glm::dvec3 normal = planet::normal_from_ecef(planet::wgs84, (a + b) * 0.5);
-    return planet::ecef_from_normal(planet::wgs84, normal, {(height(a) + height(b)) / 2});
-}
-
 class MeshRefiner {
   public:
     MeshRefiner(const RefineCommand& command, Report& report)
@@ -55,15 +47,16 @@ class MeshRefiner {
         planet::check_frame(written_reference(base_.meaning, output_.format()), output_.format());
         if (!command.region.empty()) region_.emplace(command.region, base_.meaning);
         if (!command.elevation.empty()) read_terrain();
-        if (command.sides == SideGeometry::plan && earth_centred())
+        if (command.sides == SideGeometry::plan && round())
             throw Error(Fault::bad_usage, "--sides", "an Earth-centred mesh has no plan", "space");
-        if (command.split && earth_centred())
+        if (command.split && round())
             throw Error(Fault::bad_usage, "--split", "is a point in plan, and an Earth-centred mesh has none",
                         "--region for a part of a planet");
         if (command.max_triangles && *command.max_triangles < base_.mesh.triangles.size())
             throw Error(Fault::bad_usage, "--max-triangles",
                         std::to_string(*command.max_triangles) + " are fewer than the mesh has",
                         std::to_string(base_.mesh.triangles.size()) + " or more");
+        check_effort();
         bisection_.emplace(base_.mesh, bisection_options());
     }
 
@@ -98,24 +91,41 @@ class MeshRefiner {
             throw Error(Fault::bad_data, terrain_->name(), "has no sample within the mesh", "a raster that meets it");
     }
 
-    bool earth_centred() const { return base_.meaning.reference.frame == planet::MeshFrame::ecef; }
+    bool round() const { return base_.meaning.round; }
     planet::BisectionRule rule() const { return command_.rule.value_or(planet::BisectionRule::modified); }
     SideGeometry sides() const {
-        return command_.sides.value_or(terrain_ && !earth_centred() ? SideGeometry::plan : SideGeometry::space);
+        return command_.sides.value_or(terrain_ && !round() ? SideGeometry::plan : SideGeometry::space);
     }
     planet::BisectionOptions bisection_options() const {
         planet::BisectionOptions how{rule(), sides(), {}};
-        if (terrain_ || earth_centred())
-            how.place = [this](const glm::dvec3& a, const glm::dvec3& b) { return place(a, b); };
+        if (terrain_ || round()) how.place = [this](const glm::dvec3& a, const glm::dvec3& b) { return place(a, b); };
         return how;
     }
     glm::dvec3 place(const glm::dvec3& a, const glm::dvec3& b) const {
         const glm::dvec3 middle = (a + b) * 0.5;
-        if (terrain_)
-            if (const auto ground = terrain_->ground(middle)) return *ground;
-        return earth_centred() ? between_heights(a, b) : middle;
+        glm::dvec3 there = round() ? between_heights(a, b) : middle;
+        if (terrain_) there = terrain_->ground(middle).value_or(there);
+        const double step = progressive_step();
+        return step == 0 ? there : middle + glm::round((there - middle) / step) * step;
     }
-    std::string_view placed() const { return terrain_ ? "elevation" : earth_centred() ? "mean height" : "midpoint"; }
+    /// So many metres from midpoints, times a whole number, a progressive mesh has its places: a height takes it two bytes, not
+    /// eight. 0: as they are.
+    double progressive_step() const {
+        constexpr double step = 1.0 / 256, least_bound = 100 * step;
+        const bool placed = terrain_ || round();
+        return command_.progressive && placed && command_.max_deviation.value_or(least_bound) >= least_bound ? step : 0;
+    }
+    /// Above the middle of a side of a round mesh, as high above the ellipsoid as its ends are in the mean: on the chord a
+    /// planet would stay the solid that it was.
+    glm::dvec3 between_heights(const glm::dvec3& a, const glm::dvec3& b) const {
+        const planet::MeshReference& r = base_.meaning.reference;
+        const auto ecef = [&](const glm::dvec3& p) { return r.origin + r.ecef_from_enu * p; };
+        const auto height = [&](const glm::dvec3& p) { return planet::height_from_ecef(planet::wgs84, ecef(p)).m; };
+        const glm::dvec3 normal = planet::normal_from_ecef(planet::wgs84, ecef((a + b) * 0.5));
+        const glm::dvec3 there = planet::ecef_from_normal(planet::wgs84, normal, {(height(a) + height(b)) / 2});
+        return glm::transpose(r.ecef_from_enu) * (there - r.origin);
+    }
+    std::string_view placed() const { return terrain_ ? "elevation" : round() ? "mean height" : "midpoint"; }
     bool has_goal() const { return command_.max_side || command_.max_deviation || command_.max_triangles; }
     std::function<bool(const TrianglePlaces&)> region() const {
         if (!region_) return {};
@@ -125,12 +135,32 @@ class MeshRefiner {
     void uniform_steps() {
         const auto step = report_.step("refine");
         for (int i = 0; i < *command_.steps; ++i) {
-            if (bisection_->triangle_count() > most_triangles / 2)
-                throw Error(Fault::bad_usage, "--steps", std::to_string(*command_.steps) + " make too many triangles",
-                            "at most " + std::to_string(i));
+            if (bisection_->triangle_count() > most_triangles / 2) refuse_steps(i);
             bisection_->step(region());
         }
         stopped_by_ = "steps";
+    }
+
+    [[noreturn]] void refuse_steps(int accepted) const {
+        throw Error(Fault::bad_usage, "--steps", std::to_string(*command_.steps) + " make too many triangles",
+                    "at most " + std::to_string(accepted));
+    }
+    [[noreturn]] void refuse_limit(std::string_view option) const {
+        throw Error(Fault::bad_usage, option, "takes more than " + std::to_string(most_triangles) + " triangles",
+                    "a larger limit, or --max-triangles");
+    }
+    /// What is sure to take too long is refused at once: a step halves every triangle, and none with such sides is larger than
+    /// an equilateral one.
+    void check_effort() const {
+        if (region_) return;
+        const auto count = static_cast<double>(base_.mesh.triangles.size());
+        const double steps = std::log2(static_cast<double>(most_triangles) / count);
+        if (command_.steps && *command_.steps > steps) refuse_steps(static_cast<int>(steps));
+        if (!command_.max_side || command_.max_triangles) return;
+        double area = 0;
+        for (const double a : base_areas()) area += a;
+        const double largest = std::sqrt(3) / 4 * *command_.max_side * *command_.max_side;
+        if (area / largest > static_cast<double>(most_triangles)) refuse_limit("--max-side");
     }
 
     void split_at(glm::dvec2 point) {
@@ -176,9 +206,7 @@ class MeshRefiner {
                 end_ = bisection_->refine(goal(tolerance)).end;
             }
             if (end_ == RefineEnd::budget && !command_.max_triangles)
-                throw Error(Fault::bad_usage, command_.max_deviation ? "--max-deviation" : "--max-side",
-                            "takes more than " + std::to_string(most_triangles) + " triangles",
-                            "a larger limit, or --max-triangles");
+                refuse_limit(command_.max_deviation ? "--max-deviation" : "--max-side");
             set_stopped_by();
             measure_as_written();
             if (!command_.max_deviation) return;
@@ -219,7 +247,12 @@ class MeshRefiner {
         planet::PlainMesh written{{}, surface_.triangles};
         written.vertices.reserve(surface_.vertices.size());
         for (const glm::dvec3& p : surface_.vertices) written.vertices.push_back(base_.meaning.in_metres(p));
-        measured_ = terrain_->measure(written, region());
+        // As it was refined: what is rounded may meet another polygon.
+        measured_ = terrain_->measure(
+            written, !region_ ? std::function<bool(std::size_t)>() : [this](std::size_t t) {
+                const auto& [a, b, c] = plain_.triangles[t];
+                return region_->meets({plain_.vertices[a], plain_.vertices[b], plain_.vertices[c]});
+            });
     }
 
     void finish() {
@@ -230,20 +263,27 @@ class MeshRefiner {
         planet::MeshLooks looks = looks_of(plain_, base_.meaning);
         if (output_.format() == planet::MeshFormat::glb) looks.picture = base_.picture;
         output_.write(surface_, looks, base_.meaning, rounding_);
-        if (command_.progressive) output_.write_progressive(bisection_->progressive(), base_.meaning);
+        if (command_.progressive)
+            output_.write_progressive(bisection_->progressive(), progressive_step(), base_.meaning);
         output_.commit();
         tell(found);
     }
 
-    /// How often its base triangle has been halved, by triangle: in the geometry in which sides are judged.
-    std::vector<std::uint8_t> levels() const {
-        std::vector<double> base_area;
+    /// In the geometry in which sides are judged.
+    std::vector<double> base_areas() const {
+        std::vector<double> areas;
         for (const auto& t : base_.mesh.triangles) {
             glm::dvec3 u = base_.mesh.vertices[t[1]] - base_.mesh.vertices[t[0]];
             glm::dvec3 v = base_.mesh.vertices[t[2]] - base_.mesh.vertices[t[0]];
             if (sides() == SideGeometry::plan) u.z = v.z = 0;
-            base_area.push_back(0.5 * glm::length(glm::cross(u, v)));
+            areas.push_back(0.5 * glm::length(glm::cross(u, v)));
         }
+        return areas;
+    }
+
+    /// How often its base triangle has been halved, by triangle.
+    std::vector<std::uint8_t> levels() const {
+        const std::vector<double> base_area = base_areas();
         std::vector<std::uint8_t> levels(bisection_->triangle_count());
         for (Bisection::Index t = 0; t < levels.size(); ++t) {
             const double area = area_from_sides(

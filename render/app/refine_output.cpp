@@ -21,7 +21,8 @@ using planet::MeshFrame;
 using Triangles = std::span<const std::array<std::uint32_t, 3>>;
 
 constexpr double whole_planet_m = 3e6;  ///< the middle of one lies this near to the Earth's
-constexpr int least_fitting_height = 400, most_fitting_height = 3200;  ///< pixels
+const glm::dvec3 towards_viewer = glm::normalize(glm::dvec3(0.5, -0.75, 0.6));  ///< in the south-east, 33 degrees above
+constexpr int least_fitting_height = 400, most_fitting_height = 3200;           ///< pixels
 
 void compare(const std::string& path, MeshFormat format, const planet::SurfaceMesh& written) {
     const planet::SurfaceMesh found = planet::read_mesh(path, format);
@@ -44,16 +45,37 @@ bool is_terrain(std::span<const glm::dvec3> vertices, Triangles triangles) {
     return left != right;
 }
 
-/// x right, y up, z towards a viewer in the south-east, 33 degrees above.
-std::vector<glm::dvec3> seen_from_angle(std::span<const glm::dvec3> vertices) {
-    const glm::dvec3 towards = glm::normalize(glm::dvec3(0.5, -0.75, 0.6));
-    const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), towards));
-    const glm::dvec3 up = glm::cross(towards, right);
-    std::vector<glm::dvec3> seen;
-    seen.reserve(vertices.size());
-    for (const glm::dvec3& v : vertices) seen.emplace_back(glm::dot(right, v), glm::dot(up, v), glm::dot(towards, v));
-    return seen;
-}
+/// A free surface as a planet is drawn, with both of its sides: what is behind is hidden.
+struct SeenFromAngle {
+    std::vector<glm::dvec3> vertices;  ///< from a point so far behind the surface that it is lit as if slightly round
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<std::uint8_t> level;
+
+    SeenFromAngle(std::span<const glm::dvec3> places, Triangles front, std::span<const std::uint8_t> levels)
+        : vertices(places.begin(), places.end()),
+          triangles(front.begin(), front.end()),
+          level(levels.begin(), levels.end()) {
+        glm::dvec3 low = places[0], high = low;
+        for (const glm::dvec3& v : places) {
+            low = glm::min(low, v);
+            high = glm::max(high, v);
+        }
+        const glm::dvec3 origin = (low + high) * 0.5 - glm::length(high - low) * towards_viewer;
+        for (glm::dvec3& v : vertices) v -= origin;
+        for (const auto& [i, j, k] : front) triangles.push_back({i, k, j});
+        level.insert(level.end(), levels.begin(), levels.end());
+    }
+
+    /// Of a picture as wide as others that shows it all.
+    int fitting_height(MeshPicture picture) const {
+        const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), towards_viewer));
+        const glm::dvec3 up = glm::cross(towards_viewer, right);
+        std::vector<glm::dvec3> plan;
+        for (const glm::dvec3& v : vertices) plan.emplace_back(glm::dot(right, v), glm::dot(up, v), 0);
+        picture.vertices = plan;
+        return render::fitting_height(picture, least_fitting_height, most_fitting_height);
+    }
+};
 
 glm::dvec3 middle_of(std::span<const glm::dvec3> vertices) {
     glm::dvec3 sum(0);
@@ -121,13 +143,13 @@ void RefineOutput::write(const planet::SurfaceMesh& surface, const planet::MeshL
     report_.set("output_bytes", bytes);
 }
 
-void RefineOutput::write_progressive(planet::Progressive&& mesh, const RefineMeaning& meaning) {
+void RefineOutput::write_progressive(planet::Progressive&& mesh, double step, const RefineMeaning& meaning) {
     if (!progressive_) return;
-    const auto step = report_.step("progressive");
+    const auto timed = report_.step("progressive");
     std::string note = note_from(meaning);
     if (note.size() > planet::Progressive::max_note) note.clear();  // a CRS of that length is damaged
     mesh.set_note(std::move(note));
-    const std::vector<std::uint8_t> bytes = planet::encode_progressive(mesh);
+    const std::vector<std::uint8_t> bytes = planet::encode_progressive(mesh, {step});
     progressive_->append({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     const planet::PlainMesh& base = mesh.base();
     const std::size_t of_base =
@@ -145,7 +167,7 @@ void RefineOutput::draw(std::span<const glm::dvec3> vertices, Triangles triangle
     const auto step = report_.step("picture");
     MeshPicture picture{.vertices = vertices, .triangles = triangles, .level = level};
     picture.curve = false;
-    std::vector<glm::dvec3> seen;
+    std::optional<SeenFromAngle> seen;
     if (meaning.reference.frame == MeshFrame::ecef) {
         picture.planet = true;
         picture.look_from = middle_of(vertices);
@@ -154,8 +176,13 @@ void RefineOutput::draw(std::span<const glm::dvec3> vertices, Triangles triangle
     } else if (is_terrain(vertices, triangles)) {
         picture.relief = true;
     } else {
-        seen = seen_from_angle(vertices);
-        picture.vertices = seen;
+        seen.emplace(vertices, triangles, level);
+        picture.vertices = seen->vertices;
+        picture.triangles = seen->triangles;
+        picture.level = seen->level;
+        picture.planet = true;
+        picture.look_from = towards_viewer;
+        picture.height = seen->fitting_height(picture);
     }
     if (command_.picture_size) {
         picture.width = command_.picture_size->width;

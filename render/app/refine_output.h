@@ -33,7 +33,8 @@ class RefineOutput {
     /// The mesh as rounded, if a file was asked for; it is read again and compared.
     void write(const planet::SurfaceMesh& surface, const planet::MeshLooks& looks, const RefineMeaning& meaning,
                const planet::MeshRounding& rounding);
-    void write_progressive(planet::Progressive&& mesh, const RefineMeaning& meaning);
+    /// @param step of which places are multiples from midpoints, metres; 0: of none
+    void write_progressive(planet::Progressive&& mesh, double step, const RefineMeaning& meaning);
     /// Terrain and planets as `octaglobe mesh` draws them, free surfaces from an angle.
     /// @param vertices as in a RefineBase @param level by triangle
     void draw(std::span<const glm::dvec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles,

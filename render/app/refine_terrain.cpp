@@ -68,7 +68,7 @@ RefineTerrain::RefineTerrain(const std::string& path, std::optional<planet::Vert
         ecef_from_mesh_ = of_samples.ecef_from_enu;
         verticals_.resize(raster_->count());
     }
-    if (kind == MeshFrame::ecef) field_ = std::make_unique<const planet::RasterField>(raster_, above);
+    if (meaning.round) field_ = std::make_unique<const planet::RasterField>(raster_, above);
     place_samples(frame, meaning);
     plant_tree();
 }
@@ -147,7 +147,8 @@ std::optional<glm::dvec3> RefineTerrain::ground(const glm::dvec3& p) const {
         const glm::dvec3 normal = ecef_normal(p);
         const double h = static_cast<double>(field_->height(normal));
         if (std::isnan(h)) return std::nullopt;
-        return planet::ecef_from_normal(planet::wgs84, normal, {h + (geoid_ ? geoid_->undulation(normal).m : 0)});
+        const double N = geoid_ ? geoid_->undulation(normal).m : 0;
+        return glm::transpose(ecef_from_mesh_) * (planet::ecef_from_normal(planet::wgs84, normal, {h + N}) - origin_);
     }
     constexpr double beyond = 1;  // samples: a border that is crossed is followed outwards
     glm::dvec2 at = column_row(glm::dvec2(p));
@@ -216,11 +217,12 @@ double RefineTerrain::deviation(const planet::TrianglePlaces& triangle) const {
 }
 
 RefineTerrain::Measured RefineTerrain::measure(const planet::PlainMesh& mesh,
-                                               const std::function<bool(const planet::TrianglePlaces&)>& region) const {
+                                               const std::function<bool(std::size_t triangle)>& region) const {
     Measured out;
     std::vector<bool> met(samples_.size());
     double squares = 0;
-    for (const auto& t : mesh.triangles) {
+    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+        const auto& t = mesh.triangles[triangle];
         const planet::TrianglePlaces places{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
         double largest = 0;
         for_each_sample(places, [&](std::size_t i, double d) {
@@ -231,7 +233,7 @@ RefineTerrain::Measured RefineTerrain::measure(const planet::PlainMesh& mesh,
             ++out.samples;
         });
         out.max = std::max(out.max, largest);
-        if (largest > out.max_in_region && (!region || region(places))) out.max_in_region = largest;
+        if (largest > out.max_in_region && (!region || region(triangle))) out.max_in_region = largest;
     }
     const auto valid =
         std::count_if(samples_.begin(), samples_.end(), [](const glm::dvec3& s) { return !std::isnan(s.z); });

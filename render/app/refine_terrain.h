@@ -24,20 +24,19 @@ class RefineTerrain {
     RefineTerrain(const std::string& path, std::optional<planet::VerticalDatum> datum, const RefineMeaning& meaning);
 
     const std::string& name() const { return raster_->name; }
-    /// The ground at a place: between samples bilinear and, of an Earth-centred mesh, bicubic. It has the place's x and y;
-    /// of an Earth-centred mesh its vertical. Nothing where no sample is near.
+    /// The ground at a place: between samples bilinear, at the place's x and y. Of a round mesh bicubic, on its vertical.
+    /// Nothing where no sample is near.
     std::optional<glm::dvec3> ground(const glm::dvec3& p) const;
     /// The largest distance of any sample in a triangle, its sides included. 0 without samples.
     double deviation(const planet::TrianglePlaces& triangle) const;
 
     struct Measured {
         double max = 0, rms = 0;                 ///< m
-        double max_in_region = 0;                ///< m, over triangles for which `region` holds
+        double max_in_region = 0;                ///< m, over triangles in the region
         std::size_t samples = 0, uncovered = 0;  ///< valid ones in triangles, each counted once; in none
     };
-    /// @param region empty: all triangles
-    Measured measure(const planet::PlainMesh& mesh,
-                     const std::function<bool(const planet::TrianglePlaces&)>& region = {}) const;
+    /// @param region whether a triangle is in it; empty: all are
+    Measured measure(const planet::PlainMesh& mesh, const std::function<bool(std::size_t triangle)>& region = {}) const;
 
   private:
     std::size_t index(int column, int row) const {
@@ -57,12 +56,11 @@ class RefineTerrain {
     void for_each_sample(const planet::TrianglePlaces& triangle, Visit&& visit) const;
 
     std::shared_ptr<const planet::Raster> raster_;
-    std::shared_ptr<const planet::Geoid> geoid_;  ///< null where heights are used as they are
-    /// Of an Earth-centred mesh.
-    std::unique_ptr<const planet::RasterField> field_;
-    std::vector<glm::dvec3> samples_;   ///< NaN: void
-    std::vector<glm::vec3> verticals_;  ///< empty: z everywhere
-    glm::dvec3 origin_{0};              ///< ecef = origin + ecef_from_mesh p, where there are verticals
+    std::shared_ptr<const planet::Geoid> geoid_;        ///< null where heights are used as they are
+    std::unique_ptr<const planet::RasterField> field_;  ///< of a round mesh
+    std::vector<glm::dvec3> samples_;                   ///< NaN: void
+    std::vector<glm::vec3> verticals_;                  ///< empty: z everywhere
+    glm::dvec3 origin_{0};                              ///< ecef = origin + ecef_from_mesh p, where there are verticals
     glm::dmat3 ecef_from_mesh_{1};
     SampleTree tree_;  ///< by unit normals where there are verticals, else by x and y
 };

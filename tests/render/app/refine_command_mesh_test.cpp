@@ -198,6 +198,18 @@ TEST_F(RefineCommandTest, TheBoundHoldsInALocalFrameThatRounds) {
     read("fine.glb");
 }
 
+// What is in the region is so before the file rounds it, too.
+TEST_F(RefineCommandTest, TheBoundHoldsInARegionOfAMeshThatIsRounded) {
+    hilly_terrain().write(folder_ / "dem.vrt");
+    write_mesh_file(folder_ / "flat.ply", terrain_rectangle(), degrees_reference());
+    // Along a line on which vertices of the mesh lie.
+    write_features(folder_ / "half.geojson",
+                   R"({"type":"Polygon","coordinates":[[[10.2,49],[11,49],[11,51],[10.2,51],[10.2,49]]]})");
+    const Json report = refine("flat.ply --elevation dem.vrt --max-deviation 20 --region half.geojson -o half.glb");
+    EXPECT_LE(number(report, "deviation_max_in_region_m"), 20 + 1e-6);
+    EXPECT_GT(number(report, "deviation_max_m"), 50);
+}
+
 // Beside a void, and where the mesh goes on beyond the raster, refinement ends.
 TEST_F(RefineCommandTest, VoidsAndBordersEnd) {
     Terrain terrain = hilly_terrain();

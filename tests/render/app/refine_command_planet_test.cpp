@@ -52,11 +52,11 @@ std::optional<double> distance_along(const glm::dvec3& p, const glm::dvec3& up, 
     return (bc * glm::dot(up, a) + ca * glm::dot(up, b) + ab * glm::dot(up, c)) / area;
 }
 
-/// Of any sample from the mesh along its vertical; infinite if there is no triangle.
-double largest_deviation(const SurfaceMesh& mesh, const Terrain& terrain) {
+/// Of any sample from the mesh along its vertical; infinite if there is no triangle. @param margin samples left out around
+double largest_deviation(const SurfaceMesh& mesh, const Terrain& terrain, int margin = 0) {
     double largest = 0;
-    for (int row = 0; row < terrain.height; ++row)
-        for (int column = 0; column < terrain.width; ++column) {
+    for (int row = margin; row < terrain.height - margin; ++row)
+        for (int column = margin; column < terrain.width - margin; ++column) {
             const double latitude = terrain.y + row * terrain.step_y, longitude = terrain.x + column * terrain.step_x;
             const glm::dvec3 p = ecef(latitude, longitude, terrain.height_m(column, row));
             const glm::dvec3 up = planet::normal_from_geodetic(latitude * planet::degrees, longitude * planet::degrees);
@@ -81,6 +81,29 @@ TEST_F(RefineCommandTest, VerticesOfAPlanetAreAsHighAsTheirSides) {
     EXPECT_TRUE(std::ranges::any_of(half.vertices, [](const glm::dvec3& p) {
         return std::abs(planet::height_from_ecef(wgs84, p).m - 2000) < 1e-6;
     }));
+}
+
+// In an .stl, which is local, too.
+TEST_F(RefineCommandTest, APlanetInALocalFrameIsRound) {
+    write_mesh_file(folder_ / "planet.ply", octahedron(), earth_centred());
+    EXPECT_EQ(refine("planet.ply --steps 4 -o round.stl")["frame"], "enu");
+    refine("planet.ply --steps 4 --frame enu -o local.ply");
+    MeshReference reference;
+    const SurfaceMesh local = planet::read_mesh((folder_ / "local.ply"), &reference);
+    const SurfaceMesh round = planet::read_mesh((folder_ / "round.stl"));
+    EXPECT_EQ(round.triangles.size(), local.triangles.size());
+    for (const glm::dvec3& p : local.vertices)
+        ASSERT_NEAR(planet::height_from_ecef(wgs84, reference.origin + reference.ecef_from_enu * p).m, 0, 1e-6);
+    const Terrain terrain = hilly_terrain();
+    terrain.write(folder_ / "dem.vrt");
+    write_mesh_file(folder_ / "flat.ply", terrain_rectangle(), degrees_reference());
+    refine("flat.ply --frame ecef --elevation dem.vrt --datum ellipsoid --max-deviation 50 -o part.ply");
+    // The rectangle's upper side is a chord, not the parallel of the first row of samples.
+    EXPECT_LE(largest_deviation(read("part.ply"), terrain, 1), 50 + 1e-6);
+    refine("planet.ply --frame enu --elevation dem.vrt --datum ellipsoid --max-deviation 50 -o fine.ply");
+    SurfaceMesh fine = planet::read_mesh((folder_ / "fine.ply"), &reference);
+    for (glm::dvec3& p : fine.vertices) p = reference.origin + reference.ecef_from_enu * p;
+    EXPECT_LE(largest_deviation(fine, terrain), 50 + 1e-6);
 }
 
 TEST_F(RefineCommandTest, PlacedSidesOfAPlanetAreShort) {

@@ -1,6 +1,7 @@
 // What `octaglobe refine` refuses: one line that says what, where and what would be accepted, the right exit status, and
 // nothing left behind. Hostile meshes take no memory to speak of.
 
+#include "planet/geodesy/ellipsoid.h"
 #include "tests/render/app/refine_program.h"
 #include "tests/render/app/refusals.h"
 
@@ -30,6 +31,11 @@ void write_inputs(const ScratchFolder& folder) {
     SurfaceMesh world = terrain_rectangle();
     for (glm::dvec3& v : world.vertices) v.x = v.x < 10.2 ? -170 : 170;
     write_mesh_file(folder / "world.ply", world, degrees_reference());
+    SurfaceMesh planet;
+    const double a = planet::wgs84.a;
+    planet.vertices = {{a, 0, 0}, {0, a, 0}, {0, 0, a}, {-a, -a, -a}};
+    planet.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+    write_mesh_file(folder / "planet.ply", planet, ecef);
     const std::string whole = content(folder / "mesh.ply");
     write_text(folder / "short.ply", whole.substr(0, whole.size() / 2));
     write_text(folder / "text.oprog", "no stream");
@@ -101,6 +107,8 @@ constexpr Refusal limits[] = {
     {"mesh.ply --max-side nan -o t.ply", 2, "--max-side: 'nan' is not a distance", "500m"},
     {"mesh.ply --max-triangles 31 -o t.ply", 2, "--max-triangles: 31 are fewer than the mesh has", "32 or more"},
     {"mesh.ply --steps 41 -o t.ply", 2, "--steps: '41' is out of range", "0 to 40"},
+    {"mesh.ply --steps 40 -o t.ply", 2, "--steps: 40 make too many triangles", "at most 21"},
+    {"mesh.ply --max-side 0.001 -o t.ply", 2, "--max-side: takes more than 100000000 triangles", "--max-triangles"},
     {"mesh.ply --steps 40 -o t.ply --max-side 1", 2, "--steps: goes with no limit", "--steps, --split, or limits"},
     {"mesh.ply --split 1,1 --steps 1 -o t.ply", 2, "--steps: goes with no limit", "--steps, --split, or limits"},
     {"mesh.ply --split 1 -o t.ply", 2, "--split: '1' is no point", "X,Y"},
@@ -153,6 +161,7 @@ constexpr Refusal outputs[] = {
     {"mesh.ply --steps 1 --frame enu -o t.ply", 2, "--frame: the mesh is at no known place", "EPSG:4326"},
     {"lambert.ply --steps 1 --frame enu -o t.ply", 2, "--frame: places are not known in EPSG:2154", "EPSG:4326"},
     {"mesh.ply --steps 1 --frame local -o t.ply", 2, "--frame: 'local' is unknown", "source, utm, enu, ecef"},
+    {"planet.ply --steps 1 --frame utm -o t.ply", 2, "--frame: does not reach all of the mesh", "another frame"},
     {"world.ply --steps 1 --frame utm -o t.ply", 2, "--frame: does not reach all of the mesh", "another frame"},
     {"mesh.ply --max-side 1e-4 --max-triangles 9 --steps 1 -o t.ply", 2, "--steps: goes with no limit", "--steps"},
 };
