@@ -40,8 +40,9 @@ std::string degrees_text(double angle) {
 
 /// Fit for a shell.
 std::string quoted(const std::string& text) {
-    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
-    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%#";
+    const bool comment = text.starts_with('#');  // within a word it is none
+    if (!text.empty() && !comment && text.find_first_not_of(plain) == std::string::npos) return text;
     std::string q = "'";
     for (const char c : text) q += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return q + "'";
