@@ -48,7 +48,7 @@ class Poster : public testing::TestWithParam<View> {
 TEST_P(Poster, ACropHasThePixelsOfTheWhole) {
     if (!can_draw()) GTEST_SKIP() << "no usable OpenGL";
     const planet::Image whole = draw("");
-    ASSERT_EQ(whole.width, 2500);
+    ASSERT_EQ(whole.width, 2080);
     const struct { int x, y, width, height; } crops[] = {{1960, 1980, 120, 84}, {700, 900, 300, 33}};
     for (const auto& c : crops) {
         const std::string text = std::to_string(c.x) + "," + std::to_string(c.y) + "," + std::to_string(c.width) + "x" +
