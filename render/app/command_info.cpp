@@ -10,7 +10,7 @@
 #include "render/app/data_path.h"
 #include "render/app/program.h"
 #include "render/app/report.h"
-#include "render/app/store_report.h"
+#include "render/app/store/store_report.h"
 #include "render/app/table.h"
 #include "render/app/values.h"
 #include "render/app/version.h"

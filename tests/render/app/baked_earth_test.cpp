@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "render/app/earth_store.h"
-#include "render/app/imagery.h"
+#include "render/app/picture/earth_store.h"
+#include "render/app/picture/imagery.h"
 
 namespace render {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "render/app/check_parts.h"
+#include "render/app/check/check_parts.h"
 
 namespace render {
 namespace {

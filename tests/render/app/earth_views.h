@@ -15,7 +15,7 @@
 #include "planet/octahedron/octahedron_map.h"
 #include "planet/store/store_field.h"
 #include "planet/streaming/store_tiles.h"
-#include "render/app/earth_store.h"
+#include "render/app/picture/earth_store.h"
 #include "render/gl/context.h"
 #include "render/gl/framebuffer.h"
 #include "render/picture/camera.h"

@@ -1,4 +1,4 @@
-#include "render/app/layer_options.h"
+#include "render/app/picture/layer_options.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "planet/elevation/raster_io.h"
-#include "render/app/place_list.h"
-#include "render/app/profile_chart.h"
+#include "render/app/query/place_list.h"
+#include "render/app/query/profile_chart.h"
 #include "tests/render/app/baked_store.h"
 
 namespace render {

@@ -11,8 +11,8 @@
 #include "planet/bake/bake.h"
 #include "planet/elevation/constant_field.h"
 #include "planet/octahedron/octahedron_map.h"
-#include "render/app/bake_sources.h"
-#include "render/app/earth_store.h"
+#include "render/app/picture/earth_store.h"
+#include "render/app/store/bake_sources.h"
 #include "tests/render/app/baked_store.h"
 
 namespace render {

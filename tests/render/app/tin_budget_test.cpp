@@ -1,6 +1,6 @@
 // The search for the tolerance of a budget, over curves of triangles that are known.
 
-#include "render/app/tin_budget.h"
+#include "render/app/tin/tin_budget.h"
 
 #include <gtest/gtest.h>
 

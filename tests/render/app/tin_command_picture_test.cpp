@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planet/elevation/image_io.h"
-#include "render/app/tin_written.h"
+#include "render/app/tin/tin_written.h"
 #include "tests/render/app/tin_program.h"
 
 namespace render {

@@ -1,5 +1,5 @@
 // The gpu measure as the program asks for it.
-#include "render/app/tin_gpu_measure.h"
+#include "render/app/tin/tin_gpu_measure.h"
 
 #include <gtest/gtest.h>
 

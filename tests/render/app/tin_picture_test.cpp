@@ -1,5 +1,5 @@
 // Sheets of steps towards a TIN.
-#include "render/app/tin_picture.h"
+#include "render/app/tin/tin_picture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,99 @@
+#include "render/app/picture/globe_looks.h"
+
+#include <algorithm>
+
+#include "planet/geodesy/earth_rotation.h"
+#include "planet/geodesy/geodetic.h"
+#include "render/picture/relief_patches.h"
+
+namespace render {
+
+namespace {
+
+using planet::wgs84;
+
+constexpr double highest_ground_m = 9000;
+
+}  // namespace
+
+OverlayPass::Show overlays_of(const RenderOptions& o) {
+    return {.mesh = o.shows(Overlay::mesh),
+            .levels = o.shows(Overlay::levels),
+            .curve = o.shows(Overlay::curve),
+            .segments = o.shows(Overlay::segments),
+            .deviations = o.shows(Overlay::deviations),
+            .graticule = o.shows(Overlay::graticule)};
+}
+
+void GlobeLooks::upload(const Imagery& imagery) {
+    day_ = upload_cube(imagery.day, GL_SRGB8_ALPHA8);
+    night_ = upload_cube(imagery.night, GL_SRGB8_ALPHA8);
+    relief_ = upload_cube(imagery.relief, GL_RGBA8_SNORM);
+    texel_m_ = imagery.texel_m(wgs84.mean_radius());
+}
+
+void GlobeLooks::link(std::span<const Star> stars, std::span<const std::vector<std::uint8_t>> noise,
+                      OverlayPass::Show show) {
+    terrain_.emplace();
+    sky_.emplace(stars, noise);
+    overlay_.emplace(show);
+}
+
+void GlobeLooks::set_layers(std::vector<const Layer*> layers, bool stencil) {
+    stencil_ = stencil;
+    layers_ = std::move(layers);
+    if (!layers_.empty() && !layer_pass_) layer_pass_.emplace();
+    const bool meshes = std::ranges::any_of(layers_, [](const Layer* layer) { return layer->mesh.has_value(); });
+    if (meshes && !mesh_pass_) mesh_pass_.emplace();
+    const bool names = std::ranges::any_of(layers_, [](const Layer* layer) { return !layer->names.empty(); });
+    if (names && !label_pass_) label_pass_.emplace();
+}
+
+void GlobeLooks::set_sky(const AtmosphereTables& tables, ViewTable view, planet::UtcTime time) {
+    view.uniforms.sky_detail.w = static_cast<float>(texel_m_);
+    air_ = view.uniforms;
+    sky_->set_view(tables, view, glm::mat3(planet::ecef_from_j2000(time)));
+}
+
+bool GlobeLooks::from_afar(const Camera& camera, double exaggeration) const {
+    // The least ground distance and the smallest pixel there can be, at a corner.
+    const double clearance = planet::height_from_ecef(wgs84, camera.eye).m - highest_ground_m * exaggeration;
+    const double pixel_angle = 1 / (camera.focal_px * (1 + camera.tan_corner() * camera.tan_corner()));
+    return !needs_close_up(air_, std::max(clearance, 0.0), pixel_angle);
+}
+
+TerrainLook GlobeLooks::look_of(const Frame& frame) const {
+    constexpr double stretch = (wgs84.a / wgs84.b) * (wgs84.a / wgs84.b);
+    return {.exaggeration = frame.exaggeration,
+            .polar_stretch = stretch,
+            .patch_range = patch_range,
+            .from_afar = frame.relief || from_afar(frame.camera, frame.exaggeration),
+            .relief = frame.relief,
+            .morph_reach = frame.morph_reach};
+}
+
+void GlobeLooks::draw_opaque(const Frame& frame) {
+    sky_->bind(frame.camera, frame.part);
+    day_.bind(4);
+    night_.bind(5);
+    relief_.bind(6);
+    frame.patches.bind(7);
+    terrain_->draw(frame.camera, frame.part, look_of(frame));
+    sky_->draw_air(frame.camera, frame.part);
+}
+
+void GlobeLooks::draw_blended(const Frame& frame, const Framebuffer& target) {
+    sky_->bind(frame.camera, frame.part);
+    if (mesh_pass_) mesh_pass_->draw(layers_, frame.camera, frame.part, look_of(frame));
+    overlay_->draw(frame.camera, frame.part);
+    sky_->draw_stars(frame.camera, frame.part);
+    if (!layers_.empty())
+        layer_pass_->draw(layers_, {.camera = frame.camera,
+                                    .part = frame.part,
+                                    .pixel_scale = frame.pixel_scale,
+                                    .ground = frame.ground,
+                                    .target = target});
+    if (label_pass_) label_pass_->draw(layers_, frame.camera, frame.part, frame.ground, frame.pixel_scale);
+}
+
+}  // namespace render

@@ -1,0 +1,220 @@
+// What the viewer's panels say.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "planet/geodesy/geodetic.h"
+#include "render/app/figures.h"
+#include "render/app/view/viewer_session.h"
+
+namespace render {
+
+namespace {
+
+using planet::degrees;
+using planet::wgs84;
+
+constexpr double notice_s = 4;
+
+Plot plot(const std::string& name, const std::deque<double>& values, float marked) {
+    Plot p{.name = name, .unit = "ms", .values{values.begin(), values.end()}, .marked = marked};
+    float most = 2 * marked;
+    for (const float v : p.values) most = std::max(most, v);
+    p.top = most;
+    return p;
+}
+
+struct OverlaySwitch {
+    Overlay overlay;
+    const char* name;
+    Action action;
+};
+constexpr OverlaySwitch overlay_switches[] = {
+    {Overlay::graticule, "Graticule", Action::show_graticule},
+    {Overlay::coastlines, "Coastlines", Action::show_coastlines},
+    {Overlay::borders, "Borders", Action::show_borders},
+    {Overlay::relief, "Heights as colours", Action::show_relief},
+    {Overlay::mesh, "Wireframe", Action::show_mesh},
+    {Overlay::levels, "Bisection levels", Action::show_levels},
+    {Overlay::deviations, "Deviations", Action::show_deviations},
+    {Overlay::segments, "Segments", Action::show_segments},
+    {Overlay::curve, "Sierpinski curve", Action::show_curve},
+};
+
+Action action_of_switch(const std::string& name) {
+    for (const OverlaySwitch& s : overlay_switches)
+        if (name == s.name) return s.action;
+    return Action::freeze_culling;
+}
+
+/// "45° N", "7° 30′ W"
+std::string line_text(double angle, char positive, char negative) {
+    const auto minutes = std::lround(std::abs(angle) / degrees * 60);
+    std::string text = std::to_string(minutes / 60) + "\xc2\xb0";
+    if (minutes % 60 != 0) text += " " + std::to_string(minutes % 60) + "\xe2\x80\xb2";
+    return minutes == 0 ? text : text + " " + (angle < 0 ? negative : positive);
+}
+
+std::string text_of_fact(const char* name, const std::string& value) {
+    return std::string(name) + "\t" + value;
+}
+
+}  // namespace
+
+void ViewerSession::notice(std::string text) {
+    panels_.notice = std::move(text);
+    noticed_at_ = window_.seconds();
+}
+
+void ViewerSession::fill_panels() {
+    const double age = window_.seconds() - noticed_at_;
+    if (age > notice_s) panels_.notice.clear();
+    panels_.notice_fade = static_cast<float>(std::clamp(2 * (notice_s - age), 0.0, 1.0));
+    if (!panels_.shown) return;
+    fill_status();
+    if (panels_.statistics) fill_statistics();
+    if (panels_.settings) fill_settings();
+    fill_labels();
+}
+
+void ViewerSession::fill_settings() {
+    const auto day = std::chrono::floor<std::chrono::days>(render_.time);
+    const std::chrono::year_month_day date(day);
+    panels_.time_text = planet::iso8601_from_utc(render_.time);
+    panels_.day_hours = static_cast<float>(std::chrono::duration<double, std::ratio<3600>>(render_.time - day).count());
+    panels_.year_day = static_cast<float>((day - std::chrono::sys_days{date.year() / 1 / 1}).count() + 1);
+    panels_.exaggeration = static_cast<float>(render_.exaggeration);
+    panels_.layers.clear();
+    panels_.modes.clear();
+    for (const OverlaySwitch& s : overlay_switches)
+        (s.overlay < Overlay::graticule ? panels_.modes : panels_.layers)
+            .push_back({s.name, key_text(s.action), render_.shows(s.overlay)});
+    panels_.own_layers.clear();
+    for (std::size_t i = render_.layers.size(); i-- > 0;) {
+        const LayerOptions& layer = render_.layers[i];
+        const glm::vec3 color = data_.layers.own()[i].layer.style.color;
+        panels_.own_layers.push_back({.name = data_.layers.own()[i].name,
+                                      .color = {color.r, color.g, color.b},
+                                      .on = layer.shown,
+                                      .opacity = static_cast<float>(layer.opacity)});
+    }
+    panels_.modes.push_back({"Frozen culling", key_text(Action::freeze_culling), frozen_.has_value()});
+}
+
+void ViewerSession::fill_status() {
+    const Pose& pose = navigator_->pose();
+    const Lens lens = this->lens();
+    panels_.compass = static_cast<float>(pose.heading);
+    panels_.tilt = static_cast<float>(pose.pitch + 90 * degrees);
+    panels_.eye_line = "Eye " + length_text(navigator_->clearance()) + " above ground";
+    const auto pixel_m = [&](const glm::dvec3& point) { return glm::distance(point, pose.eye()) / lens.focal; };
+    panels_.cursor_place.clear();
+    if (const auto at = pick_.first_hit(pose.eye(), ray(pose, lens, cursor_)); at && cursor_.x >= 0) {
+        const glm::dvec3 normal = planet::normal_from_ecef(wgs84, *at);
+        const planet::Geodetic place = planet::geodetic_from_normal(normal);
+        // Of the finest surface, and never exaggerated: what `octaglobe query height` answers.
+        const double found = static_cast<double>(data_.surface->field.height(normal));
+        const planet::GeoidUndulation N =
+            data_.surface->geoid ? data_.surface->geoid->undulation(normal) : planet::GeoidUndulation{};
+        panels_.cursor_place = place_text(place, place_format_, pixel_m(*at)) + "     " +
+                               heights_text({found}, planet::OrthometricHeight{found} + N, pixel_m(*at));
+    }
+    panels_.scale_px = 0;
+    if (const auto middle = pick_.first_hit(pose.eye(), ray(pose, lens, lens.middle()))) {
+        const ScaleBar bar = scale_bar(pixel_m(*middle), 0.16 * lens.width);
+        panels_.scale_px = static_cast<float>(bar.pixels);
+        panels_.scale_text = bar.text;
+    }
+    const planet::Residency& residency = mesh_->residency();
+    panels_.activity.clear();
+    if (residency.damaged > 0) panels_.activity = grouped(residency.damaged) + " damaged tiles in view";
+    if (residency.pending > 0)
+        panels_.activity = "loading " + grouped(residency.pending) + " tiles";
+    else if (mesh_->patches().missing() > 0 || (resting_ && !frame_.settled()))
+        panels_.activity = "drawing";
+    if (frozen_) panels_.activity = "culling is frozen";
+}
+
+/// Parallels are named where they meet the meridian next to the middle of the picture, and the other way around.
+void ViewerSession::fill_labels() {
+    panels_.labels.clear();
+    const Pose& pose = navigator_->pose();
+    const Lens lens = this->lens();
+    const auto middle = pick_.first_hit(pose.eye(), ray(pose, lens, lens.middle()));
+    if (!render_.shows(Overlay::graticule) || !middle) return;
+    const double step = graticule_step(camera_);
+    const planet::Geodetic about = planet::geodetic_from_normal(planet::normal_from_ecef(wgs84, *middle));
+    const double parallel = std::round(about.latitude / step) * step,
+                 meridian = std::round(about.longitude / step) * step;
+    const auto label = [&](double latitude, double longitude, std::string text) {
+        if (std::abs(latitude) > 89 * degrees) return;
+        const glm::dvec3 normal = planet::normal_from_geodetic(latitude, longitude);
+        const glm::dvec3 point = planet::ecef_from_normal(wgs84, normal, {data_.surface->ground(normal)});
+        // Not at the limb, where lines are foreshortened, and not over each other.
+        if (glm::dot(glm::normalize(pose.eye() - point), normal) < 0.25) return;
+        const auto at = pixel_of_point(pose, lens, point);
+        if (!at || at->x < 0 || at->y < 0 || at->x > lens.width - 80 || at->y > lens.height - 56) return;
+        for (const Label& l : panels_.labels)
+            if (std::abs(static_cast<double>(l.x) - at->x) < 64 && std::abs(static_cast<double>(l.y) - at->y) < 24)
+                return;
+        panels_.labels.push_back({static_cast<float>(at->x) + 6, static_cast<float>(at->y) - 10, std::move(text)});
+    };
+    for (int i = -12; i <= 12; ++i) {
+        const double latitude = parallel + i * step, longitude = meridian + i * step;
+        label(latitude, meridian, line_text(latitude, 'N', 'S'));
+        if (i != 0 && std::abs(i * step) < 180 * degrees)
+            label(parallel, longitude, line_text(std::remainder(longitude, 360 * degrees), 'E', 'W'));
+    }
+}
+
+void ViewerSession::fill_statistics() {
+    panels_.plots = {plot("Frame", frame_seconds_, 1000.0f / 60), plot("Mesh", update_seconds_, 1000.0f / 60)};
+    const planet::ResidentCounts counts = mesh_->counts();
+    panels_.facts = {
+        text_of_fact("Triangles", grouped(mesh_->segments().leaf_count())),
+        text_of_fact("Deviation",
+                     four_digits(mesh_->deviation_m()) + " m, " + four_digits(mesh_->pixel_deviation()) + " px"),
+        text_of_fact("Tiles", grouped(counts.tiles) + ", " + bytes_text(counts.tile_bytes)),
+        text_of_fact("Graphics", bytes_text(looks_.terrain().bytes())),
+        text_of_fact("Resolution", std::to_string(frame_.width()) + " x " + std::to_string(frame_.height())),
+    };
+}
+
+// The panel has the highest layer first, the options the lowest.
+void ViewerSession::take_layer_changes() {
+    for (std::size_t row = 0; row < panels_.own_layers.size(); ++row) {
+        LayerRow& changed = panels_.own_layers[row];
+        if (!std::exchange(changed.changed, false)) continue;
+        const std::size_t i = render_.layers.size() - 1 - row;
+        LayerOptions& layer = render_.layers[i];
+        layer.shown = changed.on;
+        layer.opacity = std::round(100 * static_cast<double>(changed.opacity)) / 100;
+        const std::size_t other = i + static_cast<std::size_t>(std::exchange(changed.raise, 0));
+        if (other != i && other < render_.layers.size()) {
+            std::swap(layer, render_.layers[other]);
+            data_.layers.swap(i, other);
+        }
+        show_layers();
+        return;  // what the rows are of may have changed
+    }
+}
+
+void ViewerSession::take_panel_changes() {
+    if (std::exchange(panels_.north_pressed, false)) navigator_->north_up(lens());
+    if (std::exchange(panels_.go_to_entered, false)) go_to_typed();
+    if (std::exchange(panels_.time_changed, false)) {
+        const std::chrono::year_month_day date(std::chrono::floor<std::chrono::days>(render_.time));
+        const auto day =
+            std::chrono::sys_days{date.year() / 1 / 1} + std::chrono::days(std::lround(panels_.year_day) - 1);
+        set_time(day + std::chrono::milliseconds(std::llround(static_cast<double>(panels_.day_hours) * 3.6e6)));
+    }
+    for (std::vector<Switch>* list : {&panels_.layers, &panels_.modes})
+        for (Switch& changed : *list)
+            if (std::exchange(changed.changed, false)) act(action_of_switch(changed.name));
+    take_layer_changes();
+    if (std::exchange(panels_.exaggeration_changed, false))
+        set_exaggeration(std::round(10 * static_cast<double>(panels_.exaggeration)) / 10);
+}
+
+}  // namespace render
