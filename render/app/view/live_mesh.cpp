@@ -18,8 +18,10 @@ using planet::wgs84;
 /// A table takes a tenth of a second of processor time, and in less the air about a moving eye changes little.
 constexpr double least_air_interval_s = 0.2;
 
-/// Taken in while the eye moves: 0.05 ms each.
-constexpr std::size_t tiles_a_frame = 64;
+/// Taken in while the eye moves, at 0.05 ms each a tenth of the frame's time, but enough for frames that take none.
+std::size_t tiles_for(double frame_seconds) {
+    return static_cast<std::size_t>(std::clamp(frame_seconds * 2000, 64.0, 4096.0));
+}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -73,7 +75,8 @@ bool LiveMesh::step(const Wanted& wanted, bool wait) {
     const planet::SegmentView ahead = planet::view_ahead(view_, wanted.velocity_m_s, 0.5);
     const bool moves = wanted.velocity_m_s != glm::dvec3(0);
     if (wait) segments_.invalidate(tiles_.settle(view_));
-    const auto changes = moves ? tiles_.update(view_, &ahead, tiles_a_frame) : tiles_.update(view_);
+    const double since_last = std::chrono::duration<double>(start - std::exchange(updated_, start)).count();
+    const auto changes = moves ? tiles_.update(view_, &ahead, tiles_for(since_last)) : tiles_.update(view_);
     segments_.invalidate(changes);
     segments_.update(tiles_, view_, threads);
     bool changed = segments_.built() > 0 || !changes.empty() || eye_moved;

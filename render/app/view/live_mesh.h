@@ -69,6 +69,7 @@ class LiveMesh {
     double angle_factor_ = 1;                       ///< of segment_angle
     double coarsening_ = 1;                         ///< what the budget left of the deviation wanted
     bool at_rest_ = false;
+    std::chrono::steady_clock::time_point updated_{};
     double update_seconds_ = 0;
 };
 
