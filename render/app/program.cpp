@@ -110,6 +110,10 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, const std::st
         ->type_name(form);
 }
 
+void require(bool holds, std::string_view where, std::string_view what, std::string_view accepted) {
+    if (!holds) throw planet::Error(planet::Fault::bad_usage, where, what, accepted);
+}
+
 void add_json_option(CLI::App& command, std::string& path) {
     add_value(command, "--json", "FILE", "Write a machine-readable report: flat JSON, SI units in the keys",
               [&path](std::string_view where, const std::string& text) {

@@ -15,6 +15,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #define OCTAGLOBE_COMMANDS(command)                                                                                    \
@@ -36,6 +37,9 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, const std::st
 
 /// --json FILE.
 void add_json_option(CLI::App& command, std::string& path);
+
+/// Throws planet::Error(bad_usage) unless it holds.
+void require(bool holds, std::string_view where, std::string_view what, std::string_view accepted);
 
 /// Runs the program and returns its exit status: 0 done, 1 a check failed, 2 bad usage, 3 bad input data, 4 no usable
 /// graphics. An error is one line on standard error.

@@ -7,6 +7,7 @@
 #include "planet/error.h"
 #include "render/app/arguments.h"
 #include "render/app/mesh/mesh_options.h"
+#include "render/app/mesh/mesh_output.h"
 #include "render/app/program.h"
 #include "render/picture/mesh_picture.h"
 
@@ -88,22 +89,9 @@ void add_where_to(CLI::App& command, MeshOptions& o) {
               });
     add_value(command, "--picture", "FILE", "A picture of the triangles: .png, .jpg or .tif",
               [&](Where where, const std::string& text) { o.picture = parse_picture_name(where, text); });
-    add_value(command, "--size", "WxH", "Of the picture [1600 wide, as high as the terrain; the planet 1600x1600]",
-              [&](Where where, const std::string& text) {
-                  const PictureSize size = parse_size(where, text);
-                  const auto [low, high] = std::minmax(size.width, size.height);
-                  if (low < picture_size_min || high > picture_size_max)
-                      throw Error(
-                          Fault::bad_usage, where, shown(text) + " is out of range",
-                          std::to_string(picture_size_min) + " to " + std::to_string(picture_size_max) + " a side");
-                  o.picture_size = size;
-              })
-        ->needs("--picture");
+    add_mesh_picture_size(command, "Of the picture [1600 wide, as high as the terrain; the planet 1600x1600]",
+                          o.picture_size);
     add_json_option(command, o.json);
-}
-
-void require(bool holds, Where where, Where what, Where accepted) {
-    if (!holds) throw Error(Fault::bad_usage, where, what, accepted);
 }
 
 void check_files(const MeshOptions& o) {

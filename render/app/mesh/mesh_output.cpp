@@ -81,6 +81,16 @@ void refuse_bound(double asked, double possible, MeshFormat format) {
                         four_digits(rounded_up) + " m or more" + (rounds ? ", or a .ply" : ""));
 }
 
+void add_mesh_picture_size(CLI::App& command, const std::string& what, std::optional<PictureSize>& size) {
+    add_value(command, "--size", "WxH", what, [&size](std::string_view where, const std::string& text) {
+        const PictureSize given = parse_size(where, text);
+        const auto [low, high] = std::minmax(given.width, given.height);
+        require(low >= picture_size_min && high <= picture_size_max, where, shown(text) + " is out of range",
+                std::to_string(picture_size_min) + " to " + std::to_string(picture_size_max) + " a side");
+        size = given;
+    })->needs("--picture");
+}
+
 void report_reference(const planet::MeshReference& reference, Report& report) {
     report.set("frame", planet::to_string(reference.frame));
     report.set("crs", reference.crs);

@@ -2,11 +2,14 @@
 // The files of `octaglobe mesh`: the mesh and its picture, both whole or not at all.
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "planet/exporters/mesh_file.h"
 #include "render/app/figures.h"
 #include "render/app/mesh/mesh_options.h"
+#include "render/app/program.h"
+#include "render/app/values.h"
 #include "render/picture/mesh_picture.h"
 
 namespace render {
@@ -37,6 +40,9 @@ class MeshOutput {
     planet::MeshFormat format_ = planet::MeshFormat::ply;
     std::unique_ptr<OutputFile> file_;
 };
+
+/// Adds --size of a picture of a mesh, which needs --picture. @param what is said of it
+void add_mesh_picture_size(CLI::App& command, const std::string& what, std::optional<PictureSize>& size);
 
 /// Throws planet::Error(bad_usage): a bound that a mesh of all samples does not keep in a file of a format.
 /// @param asked, possible metres

@@ -124,10 +124,6 @@ void add_where_to(CLI::App& command, TinCommand& o) {
     add_json_option(command, o.json);
 }
 
-void require(bool holds, Where where, Where what, Where accepted) {
-    if (!holds) throw Error(Fault::bad_usage, where, what, accepted);
-}
-
 bool same_file(const std::optional<std::filesystem::path>& a, const std::optional<std::filesystem::path>& b) {
     return a && b && a->lexically_normal() == b->lexically_normal();
 }

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <thread>
 
-#include "render/gl/context.h"
+#include "tests/render/app/can_draw.h"
 #include "tests/render/app/program_process.h"
 
 namespace render {
@@ -20,12 +20,6 @@ constexpr const char* flight = R"({"keys": [
 
 void write(const std::filesystem::path& file, const std::string& text) {
     std::ofstream(file) << text;
-}
-
-bool can_draw() {
-    for (const auto& way : probe_backends())
-        if (way.available) return true;
-    return false;
 }
 
 /// A program that is called ffmpeg and stands alone in PATH.

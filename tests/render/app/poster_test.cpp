@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "planet/elevation/image_io.h"
-#include "render/gl/context.h"
+#include "tests/render/app/can_draw.h"
 #include "tests/render/app/program_process.h"
 
 namespace render {
@@ -27,12 +27,6 @@ constexpr View views[] = {
     {"ground", "--at 37.58,-105.49 --height 3 --heading 250 --show graticule --samples 4 --time 2026-06-21T13:00:00Z"},
     {"stars", "--at -90,0 --height 300km --pitch -10"},
 };
-
-bool can_draw() {
-    for (const auto& way : probe_backends())
-        if (way.available) return true;
-    return false;
-}
 
 class Poster : public testing::TestWithParam<View> {
   protected:
