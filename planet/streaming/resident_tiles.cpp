@@ -102,25 +102,34 @@ bool ResidentTiles::up_to_date(const SegmentView& view, const SegmentView* ahead
 
 std::span<const LocationCode> ResidentTiles::update(const SegmentView& view, const SegmentView* ahead,
                                                     std::size_t most) {
+    finish_asking();
     take_in(most);
     if (!up_to_date(view, ahead)) {
         view_ = view;
         ahead_ = ahead ? std::optional(*ahead) : std::nullopt;
-        ask(view, ahead);
+        if (!ahead) wanted_mark_ = 0;
+        std::size_t bytes = 0;
+        std::vector<TileRequest> requests = find_needs(bytes);
         keep_within_limit();
         set_.settle();
         count_memory();
+        ask(std::move(requests), bytes);
         asked_ = true;
     }
     changes_ = set_.take_changes();
     return changes_;
 }
 
-void ResidentTiles::ask(const SegmentView& view, const SegmentView* ahead) {
+/// @param bytes becomes the memory of what is needed and there
+std::vector<TileRequest> ResidentTiles::find_needs(std::size_t& bytes) {
     residency_ = {};
     ViewNeeds needs(set_, &ResidentTile::needed, needed_mark_ = ++mark_);
-    needs.add(view);
-    for (ResidentTile* const t : needs.there()) set_.open_for(*t, view.test);
+    needs.add(view_);
+    bytes = 0;
+    for (ResidentTile* const t : needs.there()) {
+        set_.open_for(*t, view_.test);
+        bytes += t->bytes;
+    }
     std::vector<TileRequest> requests;
     for (const MissingTile& m : needs.missing()) {
         const bool damaged = damaged_.contains(m.root.bits());
@@ -131,22 +140,41 @@ void ResidentTiles::ask(const SegmentView& view, const SegmentView* ahead) {
         if (!damaged) requests.push_back({m.root, m.ratio});
     }
     for (int face = 0; face < face_count; ++face)
-        if (const PlacedTile& t = *set_.tile(LocationCode::face_root(face)); t.damaged && may_show(t, view)) {
+        if (const PlacedTile& t = *set_.tile(LocationCode::face_root(face)); t.damaged && may_show(t, view_)) {
             ++residency_.damaged;
             residency_.hidden_deviation_m = residency_.hidden_ratio = infinity;
         }
-    if (ahead) {
-        std::size_t bytes = 0;
-        for (const ResidentTile* t : needs.there()) bytes += t->bytes;
-        ask_ahead(*ahead, bytes, requests);
-    }
-    loader_.request(std::move(requests));
+    return requests;
+}
+
+// What lies ahead is found by another thread until the next call: nothing else changes tiles meanwhile, and only their
+// stamps are written. What is dropped before is what the view ahead of the last update did not want.
+void ResidentTiles::ask(std::vector<TileRequest> requests, std::size_t bytes) {
+    if (!ahead_) return loader_.request(std::move(requests));
+    asking_ = std::async(std::launch::async, [this, bytes, requests = std::move(requests)]() mutable {
+        find_needs_ahead(bytes, requests);
+        loader_.request(std::move(requests));
+    });
+}
+
+void ResidentTiles::finish_asking() {
+    if (asking_.valid()) asking_.get();
+}
+
+void ResidentTiles::wait() {
+    finish_asking();
+    loader_.wait();
+}
+
+std::size_t ResidentTiles::on_their_way() {
+    finish_asking();
+    return loader_.on_their_way();
 }
 
 // Within the limit, of which tiles that are needed now take `bytes`, and after all that is needed now.
-void ResidentTiles::ask_ahead(const SegmentView& ahead, std::size_t bytes, std::vector<TileRequest>& requests) {
+void ResidentTiles::find_needs_ahead(std::size_t bytes, std::vector<TileRequest>& requests) {
     ViewNeeds needs(set_, &ResidentTile::wanted, wanted_mark_ = ++mark_);
-    needs.add(ahead);
+    needs.add(*ahead_);
     bytes += requests.size() * typical_tile_bytes;
     for (const ResidentTile* t : needs.there())
         if (t->needed != needed_mark_) bytes += t->bytes;
@@ -162,7 +190,7 @@ void ResidentTiles::ask_ahead(const SegmentView& ahead, std::size_t bytes, std::
 }
 
 bool ResidentTiles::is_held(const ResidentTile& tile) const {
-    return tile.needed == needed_mark_ || (ahead_ && tile.wanted == wanted_mark_);
+    return tile.needed == needed_mark_ || (wanted_mark_ != 0 && tile.wanted == wanted_mark_);
 }
 
 // Drops tiles that neither view needs, those first that were needed or wanted last the longest ago. Tiles that are not
@@ -206,6 +234,7 @@ std::span<const LocationCode> ResidentTiles::settle(const SegmentView& view) {
 }
 
 std::span<const LocationCode> ResidentTiles::place(const Placement& placement) {
+    finish_asking();
     loader_.request({});
     while (loader_.on_their_way() > 0) {
         loader_.wait();

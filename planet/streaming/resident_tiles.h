@@ -9,6 +9,7 @@
 // A tile that cannot be read never comes: the cells of the tile above stand in for it, as they do for one that has not
 // come yet.
 
+#include <future>
 #include <limits>
 #include <optional>
 #include <span>
@@ -69,8 +70,8 @@ class ResidentTiles final : public TileSource {
     std::span<const LocationCode> settle(const SegmentView& view);
 
     /// Returns once another tile has come for update() to take in, or none is on its way.
-    void wait() { loader_.wait(); }
-    std::size_t on_their_way() const { return loader_.on_their_way(); }
+    void wait();
+    std::size_t on_their_way();
 
     /// Places what is there anew: nothing is loaded again. Waits for what is being loaded.
     /// @return cells in which the mesh may differ now: all
@@ -92,8 +93,10 @@ class ResidentTiles final : public TileSource {
     void take_in(std::size_t most = unlimited);
     void take_in(LoadedTile loaded);
     bool up_to_date(const SegmentView& view, const SegmentView* ahead) const;
-    void ask(const SegmentView& view, const SegmentView* ahead);
-    void ask_ahead(const SegmentView& ahead, std::size_t bytes, std::vector<TileRequest>& requests);
+    std::vector<TileRequest> find_needs(std::size_t& bytes);
+    void ask(std::vector<TileRequest> requests, std::size_t bytes);
+    void find_needs_ahead(std::size_t bytes, std::vector<TileRequest>& requests);
+    void finish_asking();
     bool is_held(const ResidentTile& tile) const;
     void keep_within_limit();
     void list_idle();
@@ -113,7 +116,8 @@ class ResidentTiles final : public TileSource {
     std::optional<SegmentView> ahead_;
     Residency residency_;
     std::vector<LocationCode> changes_;
-    TileLoader loader_;  // last: its threads end before what they use
+    TileLoader loader_;         // its threads end before what they use
+    std::future<void> asking_;  // for what lies ahead, while the mesh is made; last, as it uses the loader
 };
 
 }  // namespace planet
