@@ -154,6 +154,19 @@ std::vector<float> Framebuffer::read_rgba_float() const {
     return read<float>(GL_RGBA, 4);
 }
 
+float Framebuffer::read_depth(int x, int y) const {
+    assert(depth_ && x >= 0 && y >= 0 && x < width_ && y < height_);
+    const int row = height_ - 1 - y;
+    if (resolved_)
+        gl().BlitNamedFramebuffer(draw_.name(), resolved_.name(), x, row, x + 1, row + 1, x, row, x + 1, row + 1,
+                                  GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    gl().BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_ ? resolved_.name() : draw_.name());
+    float depth = 0;
+    gl().ReadPixels(x, row, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+    require_gl("Framebuffer::read_depth");
+    return depth;
+}
+
 std::vector<float> Framebuffer::read_depth() const {
     assert(depth_);
     return read<float>(GL_DEPTH_COMPONENT, 1);

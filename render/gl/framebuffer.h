@@ -67,6 +67,8 @@ class Framebuffer {
     std::vector<float> read_rgba_float() const;
     /// Reads depth, the top row first: 1 near, 0 far or nothing drawn.
     std::vector<float> read_depth() const;
+    /// Depth of one pixel, of one of its samples. @param x, y from the top left
+    float read_depth(int x, int y) const;
 
   private:
     void blit_to(GLuint target, GLbitfield what) const;
