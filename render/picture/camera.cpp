@@ -32,6 +32,11 @@ double focal_length_px(double fov, int width, int height) {
     return 0.5 * std::min(width, height) / std::tan(0.5 * fov);
 }
 
+double whole_globe_range(double fov) {
+    constexpr double air_m = 60e3, share = 0.94;
+    return (planet::wgs84.a + air_m) / std::sin(0.5 * share * fov) - planet::wgs84.a;
+}
+
 Camera make_camera(const glm::dvec3& eye, const glm::dvec3& at, double heading, double pitch, double focal_px,
                    int width, int height) {
     Camera c;

@@ -49,4 +49,7 @@ glm::dvec3 look_direction(const glm::dvec3& at, double heading, double pitch);
 /// Focal length in pixels for a field of view across the shorter side. @param fov rad, below pi
 double focal_length_px(double fov, int width, int height);
 
+/// Distance from the ground from which the planet and its air fill most of the picture's shorter side, m. @param fov rad
+double whole_globe_range(double fov);
+
 }  // namespace render

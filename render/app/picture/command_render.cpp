@@ -87,7 +87,7 @@ void add_render(CLI::App& program) {
     add_json_option(*command, options->json);
     command->final_callback([options, command] {
         RenderOptions& render = options->render;
-        if (render.height && command->count("--pitch") == 0) render.pitch = 0;
+        complete_view_options(*command, render);
         refuse_crop_outside(render);
         Progress progress;
         render.progress = [&](std::string_view step, double fraction) { progress.update(step, fraction); };

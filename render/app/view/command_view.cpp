@@ -75,7 +75,7 @@ void add_view(CLI::App& program) {
     add_json_option(*command, options->json);
     command->final_callback([options, command] {
         RenderOptions& render = options->viewer.render;
-        if (render.height && command->count("--pitch") == 0) render.pitch = 0;
+        complete_view_options(*command, render);
         Report report("view", options->json);
         if (!options->viewer.screenshot.empty()) {
             const OutputFile writable("--screenshot", options->viewer.screenshot);
