@@ -82,7 +82,7 @@ class SegmentTree::Visit {
             const unsigned k = t->position_below(local);
             slack.add(view_.test, t->child_bound[k]);
             if (const PlacedTile* below = t->child(tiles_, k, view_.test)) {
-                slack.add(view_.test, below->split[1]);
+                slack.add(view_.test, opened(below->split[1]));
                 if (view_.test(below->split[1])) {
                     t = below;
                     local = 1;
@@ -104,7 +104,7 @@ class SegmentTree::Visit {
             const double patch_reach = patch_reach_[static_cast<std::size_t>(n.cell.bisection_level())];
             const double distance2 = view_.test.distance2(s);
             n.divided = view_.test(s) && distance2 < patch_reach * patch_reach;
-            slack.add(view_.test, s);
+            slack.add(view_.test, opened(s));
             if (s.deviation > 0) slack.add(distance2, patch_reach);
         }
         n.expires = tree_.expiry(slack.metres());

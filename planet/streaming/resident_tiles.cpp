@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 #include "planet/streaming/view_needs.h"
@@ -27,6 +28,21 @@ bool may_show(const PlacedTile& face, const SegmentView& view) {
     for (std::size_t v = 0; v < 3; ++v)
         radius = std::max(radius, glm::distance(centre, ecef_from_grid(face.position[v])));
     return !view.culling.hidden(centre, radius + relief);
+}
+
+/// A lower bound of the depth below which the test splits nothing in the tile. All its vertices lie in the ball of its
+/// root; metres are added for the roundings of its record and theirs.
+int depth_reached(const PlacedTile& tile, const SplitTest& test) {
+    constexpr double rounding_m = 4;
+    SplitRecord root = tile.split[1];
+    if (tile.depth == 0 || root.deviation == 0) return 0;
+    const double nearest = std::sqrt(test.distance2(root)) - static_cast<double>(root.radius) - rounding_m;
+    int depth = 0;
+    for (; depth < tile.depth; ++depth) {
+        const auto [deviation, radius] = tile.most[static_cast<std::size_t>(depth)];
+        if (nearest >= static_cast<double>(radius) + test.K * static_cast<double>(deviation)) break;
+    }
+    return depth;
 }
 
 }  // namespace
@@ -66,6 +82,8 @@ LoadedTile ResidentTiles::load(LocationCode root) const {
     LoadedTile loaded{root, nullptr, tile && tile->damaged, {}};
     if (tile && (!tile->damaged || root.bisection_level() == 0)) {
         loaded.tile = std::make_unique<PlacedTile>(*tile, placement_);
+        loaded.tile->close();
+        loaded.tile->set_no_children();
         loaded.support = tile_support(root, tile->depth);
     }
     return loaded;
@@ -113,6 +131,7 @@ void ResidentTiles::ask(const SegmentView& view, const SegmentView* ahead) {
     residency_ = {};
     ViewNeeds needs(set_, &ResidentTile::needed, needed_mark_ = ++mark_);
     needs.add(view);
+    for (ResidentTile* const t : needs.there()) open(*t);
     std::vector<TileRequest> requests;
     for (const MissingTile& m : needs.missing()) {
         const bool damaged = damaged_.contains(m.root.bits());
@@ -133,6 +152,13 @@ void ResidentTiles::ask(const SegmentView& view, const SegmentView* ahead) {
         ask_ahead(*ahead, bytes, requests);
     }
     loader_.request(std::move(requests));
+}
+
+// Ahead of what the view splits: cells of a tile that is opened further are made anew.
+void ResidentTiles::open(ResidentTile& tile) {
+    constexpr int levels_ahead = 2;
+    const int depth = depth_reached(*tile.tile, view_.test);
+    if (depth > tile.open_depth) set_.open(tile, depth + levels_ahead);
 }
 
 // Within the limit, of which tiles that are needed now take `bytes`, and after all that is needed now.

@@ -87,6 +87,7 @@ class ResidentTiles final : public TileSource {
     void take_in(LoadedTile loaded);
     bool up_to_date(const SegmentView& view, const SegmentView* ahead) const;
     void ask(const SegmentView& view, const SegmentView* ahead);
+    void open(ResidentTile& tile);
     void ask_ahead(const SegmentView& ahead, std::size_t bytes, std::vector<TileRequest>& requests);
     bool is_held(const ResidentTile& tile) const;
     void keep_within_limit();
