@@ -167,6 +167,14 @@ float Framebuffer::read_depth(int x, int y) const {
     return depth;
 }
 
+glm::dvec2 Framebuffer::depth_sample() const {
+    if (samples_ == 1) return glm::dvec2(0.5);
+    GLfloat place[2] = {0.5f, 0.5f};
+    gl().BindFramebuffer(GL_FRAMEBUFFER, draw_.name());
+    gl().GetMultisamplefv(GL_SAMPLE_POSITION, 0, place);
+    return {static_cast<double>(place[0]), 1 - static_cast<double>(place[1])};
+}
+
 std::vector<float> Framebuffer::read_depth() const {
     assert(depth_);
     return read<float>(GL_DEPTH_COMPONENT, 1);

@@ -91,11 +91,11 @@ bool ViewFrame::draw_settled(GlobeLooks& looks, const GlobeLooks::Frame& frame, 
 std::optional<glm::dvec3> ViewFrame::point_at(const glm::dvec2& pixel) const {
     if (!shown()) return std::nullopt;
     const Camera& camera = still_shown_ ? still_camera_ : moving_camera_;
-    const glm::ivec2 at(glm::floor(pixel * (still_shown_ ? 1 : moving_scale_)));
+    const glm::ivec2 at(glm::floor(pixel / pixel_size()));
     if (at.x < 0 || at.y < 0 || at.x >= camera.width || at.y >= camera.height) return std::nullopt;
     const auto depth = static_cast<double>(shown().read_depth(at.x, at.y));
     if (!(depth > 0)) return std::nullopt;
-    return ecef_from_screen(camera, {glm::dvec2(at) + 0.5, depth});
+    return ecef_from_screen(camera, {glm::dvec2(at) + shown().depth_sample(), depth});
 }
 
 void ViewFrame::show(int width, int height) const {

@@ -30,6 +30,8 @@ class ViewFrame {
     /// What the picture that is shown has in a pixel, by its depth: within a pixel of it, to depth_resolution(). Nothing:
     /// the sky, or outside. @param pixel from the top left, of the size that draw_...() were given
     std::optional<glm::dvec3> point_at(const glm::dvec2& pixel) const;
+    /// Of the picture that is shown, in pixels of the view: 1 or more.
+    double pixel_size() const { return still_shown_ ? 1 : 1 / moving_scale_; }
     int width() const { return shown().width(); }
     int height() const { return shown().height(); }
 

@@ -150,18 +150,19 @@ std::optional<glm::dvec3> ViewerSession::point_under(const glm::dvec3& origin, c
     return pick_.first_hit(origin, way);
 }
 
-/// Where the settled picture shows an imported mesh that is two pixels or more off the ground, ecef. There is no ray to
-/// follow through its triangles, of which there may be millions: its depth was drawn.
+/// Where the picture shows an imported mesh that is so far off the ground that it can be told from it, ecef. No ray is
+/// followed through its triangles, of which there may be millions: its depth was drawn.
 std::optional<glm::dvec3> ViewerSession::mesh_at(const glm::dvec2& pixel) const {
     const bool meshes = std::ranges::any_of(
         render_.layers, [](const LayerOptions& l) { return l.shown && l.opacity > 0 && is_mesh(l); });
-    if (!meshes || !frame_.settled()) return std::nullopt;
+    if (!meshes) return std::nullopt;
     const auto point = frame_.point_at(pixel);
     if (!point) return std::nullopt;
     const double distance = glm::distance(camera_.eye, *point);
     const auto ground = planet::SegmentSurface(mesh_->segments()).point_at(planet::normal_from_ecef(wgs84, *point));
     const double ground_off = ground ? glm::distance(*ground, *point) : distance;
-    if (ground_off < depth_resolution(distance) + 2 * distance / camera_.focal_px) return std::nullopt;
+    const double pixels = 2 * frame_.pixel_size() + mesh_->pixel_deviation();
+    if (ground_off < depth_resolution(distance) + pixels * distance / camera_.focal_px) return std::nullopt;
     return point;
 }
 
