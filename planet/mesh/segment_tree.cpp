@@ -7,6 +7,13 @@
 
 namespace planet {
 
+namespace {
+
+/// Room is made for them at once, see segments.cpp.
+constexpr std::size_t usual_nodes = 1 << 18;
+
+}  // namespace
+
 Sphere bounding_sphere(const PlacedTile& t, unsigned local) {
     if (local >> t.depth) local >>= 1;
     const SplitRecord s = t.split[local];
@@ -141,6 +148,7 @@ double SegmentTree::expiry(double slack_m) const {
 void SegmentTree::update(const TileSource& tiles, const SegmentView& view) {
     if (nodes_.empty()) {
         eye_ = view.test.eye;
+        nodes_.reserve(usual_nodes);
         for (int face = 0; face < face_count; ++face)
             nodes_.push_back(SegmentNode{.cell = LocationCode::face_root(face)});
     }

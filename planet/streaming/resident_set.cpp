@@ -17,6 +17,18 @@ std::size_t measured_bytes(const ResidentTile& tile) {
     return tile.tile->bytes() + (tile.support.size() + tile.below.size()) * sizeof(ResidentTile*);
 }
 
+/// A record that passes every test that splits a cell of the tile at this depth or deeper. All split vertices lie in the
+/// ball of the root; metres are added for the roundings of its record and theirs.
+SplitRecord deeper_than(const PlacedTile& tile, int depth) {
+    constexpr float rounding_m = 4;
+    if (depth >= tile.depth || !tile.is_stored(1)) return {};
+    SplitRecord record = tile.split[1];
+    const auto [deviation, radius] = tile.most[static_cast<std::size_t>(depth)];
+    record.deviation = deviation;
+    record.radius += radius + rounding_m;
+    return record;
+}
+
 }  // namespace
 
 const PlacedTile* ResidentSet::tile(LocationCode root) const {
@@ -48,11 +60,13 @@ ResidentTile& ResidentSet::slot(LocationCode root) {
 
 // Not before what is unsettled, which may name them, is settled.
 void ResidentSet::free_unused() {
-    for (ResidentTile* const tile : std::exchange(unused_, {})) {
-        if (tile->tile || tile->supported > 0) continue;
+    for (const LocationCode root : unused_) {
+        const auto found = tiles_.find(root.bits());
+        if (found == tiles_.end() || found->second.tile || found->second.supported > 0) continue;
         bytes_ -= sizeof(ResidentTile);
-        tiles_.erase(tile->root.bits());
+        tiles_.erase(found);
     }
+    unused_.clear();
 }
 
 ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile, std::span<const LocationCode> support) {
@@ -60,6 +74,7 @@ ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile, std::span<co
     assert(!resident.tile && resident.open_depth == 0);
     resident.below.assign(tile->child_bound.size(), nullptr);
     resident.tile = std::move(tile);
+    resident.unopened = deeper_than(*resident.tile, 0);
     resident.fresh = true;
     marked_.push_back(resident.root);
     tie(resident, support);
@@ -103,7 +118,7 @@ void ResidentSet::untie(ResidentTile& tile) {
         --tile.above->children;
     }
     for (ResidentTile* const support : std::exchange(tile.support, {})) {
-        if (--support->supported == 0) unused_.push_back(support);
+        if (--support->supported == 0) unused_.push_back(support->root);
     }
     tile.above = nullptr;
     tile.beside = {};
@@ -123,16 +138,26 @@ void ResidentSet::erase(LocationCode root) {
     tile.tile.reset();
     tile.changed.reset();
     tile.below = {};
-    unused_.push_back(&tile);
+    unused_.push_back(root);
     changes_.push_back(root);
 }
 
 void ResidentSet::open(ResidentTile& tile, int depth) {
     const int from = std::exchange(tile.open_depth, std::min(std::max(tile.open_depth, depth), tile.tile->depth));
     if (from == tile.open_depth) return;
+    tile.unopened = deeper_than(*tile.tile, tile.open_depth);
     // What lies below these follows where they open.
     for (unsigned i = 1u << from; i < 2u << from; ++i)
         if (from == 0 || tile.tile->is_open(i >> 1)) unsettle(tile, i);
+}
+
+// The cells of a tile that is opened further are made anew: not at every step of the eye.
+void ResidentSet::open_for(ResidentTile& tile, const SplitTest& test) {
+    constexpr int levels_ahead = 2;
+    if (!test(tile.unopened)) return;
+    int depth = tile.open_depth + 1;
+    while (depth < tile.tile->depth && test(deeper_than(*tile.tile, depth))) ++depth;
+    open(tile, depth + levels_ahead);
 }
 
 void ResidentSet::unsettle(ResidentTile& tile, unsigned local) {
@@ -236,6 +261,7 @@ void ResidentSet::place(const Placement& placement, unsigned threads) {
     bytes_ = 0;
     for (ResidentTile* const t : tiles) {
         bytes_ += t->bytes = measured_bytes(*t);
+        t->unopened = deeper_than(*t->tile, t->open_depth);
         if (t->above)
             t->above->tile->set_child(layers_.position(t->root), t->tile.get());
         else

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "planet/mesh/placed_tile.h"
+#include "planet/mesh/view.h"
 
 namespace planet {
 
@@ -35,6 +36,7 @@ struct ResidentTile {
     std::size_t children = 0;                                      ///< how many of them are there
     std::size_t supported = 0;                                     ///< how many tiles have it in their support
     int open_depth = 0;                                            ///< diamonds of so many levels may exist
+    SplitRecord unopened{};                                        ///< passes every test that splits deeper ones
     bool fresh = true;                                             ///< came since changes were last taken
     std::unique_ptr<std::bitset<1u << tile_levels>> changed;       ///< of its cells, since then; nullptr: none
     std::uint64_t needed = 0, wanted = 0, followed = 0, held = 0;  ///< stamps of ViewNeeds
@@ -57,6 +59,8 @@ class ResidentSet final : public TileSource {
     ResidentTile& insert(std::unique_ptr<PlacedTile> tile, std::span<const LocationCode> support);
     /// Lets it count as a tile of at least this depth, if it is as deep. To be followed by settle().
     void open(ResidentTile& tile, int depth);
+    /// Opens it, if it is not yet as deep as the test may split it, to some levels more than that.
+    void open_for(ResidentTile& tile, const SplitTest& test);
     /// Takes a tile out. None below it may be there. To be followed by settle().
     void erase(LocationCode root);
     /// Opens and closes diamonds until the rule holds. Before, a walk may meet cracks.
@@ -94,7 +98,7 @@ class ResidentSet final : public TileSource {
     TileLayers layers_;
     std::unordered_map<std::uint64_t, ResidentTile> tiles_;
     std::array<std::vector<Unsettled>, max_bisection_level> unsettled_;  // by bisection level
-    std::vector<ResidentTile*> unused_;                                  // may be: to be freed
+    std::vector<LocationCode> unused_;                                   // may be: to be freed
     std::vector<LocationCode> changes_;
     std::vector<LocationCode> marked_;  // fresh tiles, and those with cells that have changed
     std::size_t size_ = 0, bytes_ = 0;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "planet/streaming/view_needs.h"
 
@@ -30,19 +30,8 @@ bool may_show(const PlacedTile& face, const SegmentView& view) {
     return !view.culling.hidden(centre, radius + relief);
 }
 
-/// A lower bound of the depth below which the test splits nothing in the tile. All its vertices lie in the ball of its
-/// root; metres are added for the roundings of its record and theirs.
-int depth_reached(const PlacedTile& tile, const SplitTest& test) {
-    constexpr double rounding_m = 4;
-    SplitRecord root = tile.split[1];
-    if (tile.depth == 0 || root.deviation == 0) return 0;
-    const double nearest = std::sqrt(test.distance2(root)) - static_cast<double>(root.radius) - rounding_m;
-    int depth = 0;
-    for (; depth < tile.depth; ++depth) {
-        const auto [deviation, radius] = tile.most[static_cast<std::size_t>(depth)];
-        if (nearest >= static_cast<double>(radius) + test.K * static_cast<double>(deviation)) break;
-    }
-    return depth;
+std::uint64_t last_use(const ResidentTile& tile) {
+    return std::max(tile.needed, tile.wanted);
 }
 
 }  // namespace
@@ -131,7 +120,7 @@ void ResidentTiles::ask(const SegmentView& view, const SegmentView* ahead) {
     residency_ = {};
     ViewNeeds needs(set_, &ResidentTile::needed, needed_mark_ = ++mark_);
     needs.add(view);
-    for (ResidentTile* const t : needs.there()) open(*t);
+    for (ResidentTile* const t : needs.there()) set_.open_for(*t, view.test);
     std::vector<TileRequest> requests;
     for (const MissingTile& m : needs.missing()) {
         const bool damaged = damaged_.contains(m.root.bits());
@@ -152,13 +141,6 @@ void ResidentTiles::ask(const SegmentView& view, const SegmentView* ahead) {
         ask_ahead(*ahead, bytes, requests);
     }
     loader_.request(std::move(requests));
-}
-
-// Ahead of what the view splits: cells of a tile that is opened further are made anew.
-void ResidentTiles::open(ResidentTile& tile) {
-    constexpr int levels_ahead = 2;
-    const int depth = depth_reached(*tile.tile, view_.test);
-    if (depth > tile.open_depth) set_.open(tile, depth + levels_ahead);
 }
 
 // Within the limit, of which tiles that are needed now take `bytes`, and after all that is needed now.
@@ -183,24 +165,25 @@ bool ResidentTiles::is_held(const ResidentTile& tile) const {
     return tile.needed == needed_mark_ || (ahead_ && tile.wanted == wanted_mark_);
 }
 
-// Drops tiles that neither view needs, those first that were needed or wanted last the longest ago.
+// Drops tiles that neither view needs, those first that were needed or wanted last the longest ago. Tiles that are not
+// listed have been so later: the list holds until it is used up.
 void ResidentTiles::keep_within_limit() {
     const std::size_t limit = cache_.memory_limit_bytes();
-    if (set_.bytes() <= limit) return;
-    const auto last = [](const ResidentTile* t) { return std::max(t->needed, t->wanted); };
-    std::vector<ResidentTile*> free;
-    for (ResidentTile* t : set_.all())
-        if (t->root.bisection_level() > 0 && !is_held(*t)) free.push_back(t);
-    // A tile is needed whenever one below it is: of equals, the deeper goes first.
-    const auto later = [&](const ResidentTile* a, const ResidentTile* b) {
-        return last(a) != last(b) ? last(a) > last(b) : a->root < b->root;
-    };
-    std::make_heap(free.begin(), free.end(), later);  // few of many go
-    while (set_.bytes() > limit && !free.empty()) {
-        std::pop_heap(free.begin(), free.end(), later);
-        if (free.back()->children == 0) set_.erase(free.back()->root);
-        free.pop_back();
+    for (bool listed = false; set_.bytes() > limit; idle_.pop_back()) {
+        if (idle_.empty() && !std::exchange(listed, true)) list_idle();
+        if (idle_.empty()) return;
+        const IdleTile& idle = idle_.back();
+        if (last_use(*idle.tile) == idle.last && idle.tile->children == 0) set_.erase(idle.root);
     }
+}
+
+void ResidentTiles::list_idle() {
+    for (ResidentTile* t : set_.all())
+        if (t->root.bisection_level() > 0 && !is_held(*t)) idle_.push_back({last_use(*t), t->root, t});
+    // A tile is needed whenever one below it is: of equals, the deeper goes first.
+    std::sort(idle_.begin(), idle_.end(), [](const IdleTile& a, const IdleTile& b) {
+        return a.last != b.last ? a.last > b.last : a.root < b.root;
+    });
 }
 
 void ResidentTiles::count_memory() {
