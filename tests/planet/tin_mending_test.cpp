@@ -141,7 +141,9 @@ TEST(TinMending, LeavesHolesAsTheyAre) {
         if (solid) mesh = solid_below(mesh, {199, 179}).top;
         const std::int64_t area = doubled_area(mesh);
         std::size_t border = 0, border_after = 0;
-        if (!solid) ASSERT_TRUE(sound(mesh, &border));
+        if (!solid) {
+            EXPECT_TRUE(sound(mesh, &border));
+        }
         TinMending mending(mesh);
         std::size_t inside = 0;
         for (const glm::ivec2 p : some_samples(mesh, grid)) {
@@ -152,7 +154,7 @@ TEST(TinMending, LeavesHolesAsTheyAre) {
         EXPECT_GT(inside, 5u);
         const TinMesh mended = mending.mesh(grid);
         EXPECT_EQ(doubled_area(mended), area);
-        if (solid) continue;
+        if (solid) continue;  // whose holes touch in vertices of their own
         EXPECT_TRUE(sound(mended, &border_after));
         EXPECT_GE(border_after, border);
         EXPECT_EQ(brute_deviation(mended, grid).voids, brute_deviation(mesh, grid).voids);

@@ -139,7 +139,7 @@ TEST(TinWritten, IsMeasuredAgainWhereItHasChanged) {
     for (int y = 100; y < 130; ++y)
         for (int x = 90; x < 120 + y % 5; ++x) pierced.set({x, y}, std::nanf(""));
     const RasterFrame frame = frame_of(raster, MeshFrame::enu);
-    for (const HeightGrid* grid : {&whole, &pierced}) {
+    for (const HeightGrid* const grid : {&whole, &std::as_const(pierced)}) {
         TinMesh mesh = make_tin(*grid, {.tolerance = 6}).mesh;
         ASSERT_GT(mesh.triangles.size(), 3 * 4096u) << "several pieces";
         WrittenMeasure measure(*grid, frame, {.above = 5, .by_sample = true});
