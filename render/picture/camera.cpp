@@ -32,6 +32,11 @@ double focal_length_px(double fov, int width, int height) {
     return 0.5 * std::min(width, height) / std::tan(0.5 * fov);
 }
 
+double whole_globe_range(double fov) {
+    constexpr double air_m = 60e3, share = 0.94;
+    return (planet::wgs84.a + air_m) / std::sin(0.5 * share * fov) - planet::wgs84.a;
+}
+
 Camera make_camera(const glm::dvec3& eye, const glm::dvec3& at, double heading, double pitch, double focal_px,
                    int width, int height) {
     Camera c;
@@ -43,6 +48,20 @@ Camera make_camera(const glm::dvec3& eye, const glm::dvec3& at, double heading, 
     c.width = width;
     c.height = height;
     return c;
+}
+
+std::optional<glm::dvec3> screen_from_ecef(const Camera& camera, const glm::dvec3& point) {
+    const glm::dvec3 view = camera.view_from_ecef * (point - camera.eye);
+    if (!(-view.z > camera.near_m)) return std::nullopt;
+    const double scale = camera.focal_px / -view.z;
+    return glm::dvec3(0.5 * camera.width + scale * view.x, 0.5 * camera.height - scale * view.y,
+                      camera.near_m / -view.z);
+}
+
+glm::dvec3 ecef_from_screen(const Camera& camera, const glm::dvec3& at) {
+    const double ahead = camera.near_m / at.z, across = ahead / camera.focal_px;
+    const glm::dvec3 view(across * (at.x - 0.5 * camera.width), across * (0.5 * camera.height - at.y), -ahead);
+    return camera.eye + glm::transpose(camera.view_from_ecef) * view;
 }
 
 glm::dmat4 Camera::clip_from_view(const PicturePart& part) const {

@@ -202,7 +202,7 @@ void Navigator::fly_to(const glm::dvec3& normal, double range, const Lens& lens)
 void Navigator::fly_home(const Lens& lens) {
     const double fov = 2 * std::atan(0.5 * std::min(lens.width, lens.height) / lens.focal);
     const Sight from = sight(lens);
-    fly_to({from.normal, 0, (wgs84.a + 60e3) / std::sin(0.5 * 0.94 * fov) - wgs84.a, 0, -90 * planet::degrees}, lens);
+    fly_to({from.normal, 0, whole_globe_range(fov), 0, -90 * planet::degrees}, lens);
 }
 
 void Navigator::north_up(const Lens& lens) {

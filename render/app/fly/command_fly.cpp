@@ -8,6 +8,7 @@
 #include "render/app/program.h"
 #include "render/app/progress.h"
 #include "render/app/report.h"
+#include "render/app/tile_report.h"
 
 namespace render {
 namespace {
@@ -17,6 +18,7 @@ struct Options {
     LineFollowing line;
     std::filesystem::path plan;
     std::string json;
+    bool time_given = false;
 };
 
 std::pair<long, long> frames_from_text(std::string_view where, const std::string& text) {
@@ -78,11 +80,7 @@ void fill(Report& report, const FilmOptions& options, const FilmReport& film) {
     report.set("last_frame", film.last_frame);
     report.set("frames_of_flight", film.frames_of_flight);
     report.set("triangles_max", film.triangles_max);
-    report.set("tiles", film.tiles.tiles);
-    report.set("tile_bytes", film.tiles.tile_bytes);
-    report.set("tiles_loaded", film.tiles.tiles_loaded);
-    report.set("memory_limit_bytes", film.tiles.memory_limit_bytes);
-    report.set("memory_peak_bytes", film.tiles.memory_peak_bytes);
+    report_tiles(report, film.tiles);
     report.set("deviation_max_m", film.deviation_max_m);
     report.set("pixel_deviation_max", film.pixel_deviation_max);
     report.set("pixel_deviation_bound", options.render.max_pixel_deviation);
@@ -97,8 +95,9 @@ void fill(Report& report, const FilmOptions& options, const FilmReport& film) {
 void fly(Options& o) {
     const RenderOptions& render = o.film.render;
     refuse_large_frames(render.size);
-    const FlightPlan plan =
-        read_flight_plan(o.plan, {.exaggeration = render.exaggeration, .time = render.time}, o.line);
+    PlannedKey usual{.exaggeration = render.exaggeration};
+    if (o.time_given) usual.time = render.time;
+    const FlightPlan plan = read_flight_plan(o.plan, usual, o.line);
     Report report("fly", o.json);
     const auto output = make_frame_output(render.output, render.size, o.film.fps);
     FilmReport film;
@@ -129,7 +128,8 @@ void add_fly(CLI::App& program) {
         "            {\"range\": \"40km\", \"heading\": 30, \"pitch\": -25, \"seconds\": 8},\n"
         "            {\"heading\": 120, \"speed\": 0.5}]}\n"
         "The words are those of render: at, range or height, heading, pitch, exaggeration, time. What a key leaves\n"
-        "out is as in the one before. seconds: when it is reached; speed: how much faster than a quiet pace.\n"
+        "out is as in the one before; where none says a time, it is morning at the place seen from nearest.\n"
+        "seconds: when a key is reached; speed: how much faster than a quiet pace.\n"
         "Or it is a GeoJSON, GPX or KML file with one line to follow.");
     add_value(*command, "path", "PATH", "The views to fly through, or a line to follow",
               [options](std::string_view, const std::string& text) { options->plan = text; })
@@ -140,7 +140,10 @@ void add_fly(CLI::App& program) {
     add_look_options(*command, options->film.render);
     add_backend_option(*command, options->film.render);
     add_json_option(*command, options->json);
-    command->final_callback([options] { fly(*options); });
+    command->final_callback([options, command] {
+        options->time_given = command->count("--time") > 0;
+        fly(*options);
+    });
 }
 
 }  // namespace render

@@ -11,6 +11,7 @@
 #include "planet/error.h"
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/local_frame.h"
+#include "render/app/picture/daylight.h"
 #include "render/app/values.h"
 
 namespace render {
@@ -185,15 +186,18 @@ FlightPlan plan_of_line(const std::string& file, const PlannedKey& usual, const 
     return plan_along(line, usual, following);
 }
 
-FlightKey flight_key(const PlannedKey& key, const DrawnSurface& surface, About about) {
+double distance_of(const PlannedKey& key) {
+    return key.range ? *key.range : *key.height;
+}
+
+FlightKey flight_key(const PlannedKey& key, const DrawnSurface& surface, About about, planet::UtcTime usual_time) {
     const glm::dvec3 normal = planet::normal_from_geodetic(key.at.latitude, key.at.longitude);
     FlightKey flown;
     flown.seconds = key.seconds;
     flown.pace = key.speed;
-    flown.view = {{normal, surface.ground(normal, key.exaggeration), key.range ? *key.range : *key.height, key.heading,
-                   key.pitch},
+    flown.view = {{normal, surface.ground(normal, key.exaggeration), distance_of(key), key.heading, key.pitch},
                   key.exaggeration,
-                  key.time};
+                  key.time.value_or(usual_time)};
     if (about == About::eye && key.range) {
         const Pose pose = pose_of(flown.view.sight);
         const double ground = surface.ground(pose.normal, key.exaggeration);
@@ -241,11 +245,19 @@ FlightPlan read_flight_plan(const std::filesystem::path& file, const PlannedKey&
     }
 }
 
+planet::UtcTime FlightPlan::usual_time() const {
+    for (const PlannedKey& key : keys)
+        if (key.time) return *key.time;
+    const PlannedKey& nearest = *std::ranges::min_element(keys, {}, distance_of);
+    return morning_at(nearest.at, distance_of(nearest));
+}
+
 FlightPath flight_path(const FlightPlan& plan, const DrawnSurface& surface) {
     const bool places = std::ranges::all_of(plan.keys, [](const PlannedKey& key) { return key.range.has_value(); });
     const About about = places ? About::place : About::eye;
+    const planet::UtcTime usual_time = plan.usual_time();
     std::vector<FlightKey> keys;
-    for (const PlannedKey& key : plan.keys) keys.push_back(flight_key(key, surface, about));
+    for (const PlannedKey& key : plan.keys) keys.push_back(flight_key(key, surface, about, usual_time));
     if (plan.follows_line) even_out(keys);
     return {std::move(keys), about};
 }

@@ -29,7 +29,7 @@ struct PlannedKey {
     std::optional<double> height{};  ///< m, over the ground at `at`
     double heading = 0, pitch = -90 * planet::degrees;
     double exaggeration = 1;
-    planet::UtcTime time{};
+    std::optional<planet::UtcTime> time{};  ///< see FlightPlan::usual_time
     std::optional<double> seconds{};
     double speed = 1;
 };
@@ -37,6 +37,9 @@ struct PlannedKey {
 struct FlightPlan {
     std::vector<PlannedKey> keys;
     bool follows_line = false;
+
+    /// Of keys that have none: that of the first key that has one, else morning at the place that is seen from nearest.
+    planet::UtcTime usual_time() const;
 };
 
 /// How a line is followed.
@@ -48,7 +51,7 @@ struct LineFollowing {
 
 /// Reads a plan. A file that ends in .json and holds no GeoJSON is one of keys; any other is read as features, of which
 /// there must be one line. Throws planet::Error(bad_data), naming file and key.
-/// @param usual what keys have that say nothing else: exaggeration, time
+/// @param usual what keys have that say nothing else: exaggeration and, if it was given, time
 FlightPlan read_flight_plan(const std::filesystem::path& file, const PlannedKey& usual, const LineFollowing& line);
 
 /// The flight over the drawn ground. If each key is a range it is about the places that are looked at, else about the eye.

@@ -14,11 +14,6 @@ namespace {
 
 using planet::wgs84;
 
-/// Distance from the ground from which the planet and its air fill most of the picture's shorter side, m.
-double whole_globe_range(double fov) {
-    return (wgs84.a + 60e3) / std::sin(0.5 * 0.94 * fov) - wgs84.a;
-}
-
 /// No geoid of the Earth lies deeper below the ellipsoid, m: EGM96 goes down to -107.
 constexpr double deepest_geoid_m = 120;
 constexpr double highest_ground_m = 9000;

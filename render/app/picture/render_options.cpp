@@ -3,7 +3,9 @@
 #include <string>
 
 #include "planet/error.h"
+#include "render/app/picture/daylight.h"
 #include "render/app/program.h"
+#include "render/picture/camera.h"
 
 namespace render {
 namespace {
@@ -98,7 +100,7 @@ void add_lens_options(CLI::App& command, RenderOptions& o) {
               });
     add_value(command, "--size", "WxH", "Pixels [1920x1080; of a window and of frames 1280x720]",
               [&](Where where, const std::string& text) { o.size = parse_size(where, text); });
-    add_value(command, "--time", "UTC", "Where the sun and the stars are [2026-06-21T09:00:00Z]",
+    add_value(command, "--time", "UTC", "Where the sun and the stars are [morning at the place, in its summer]",
               [&](Where where, const std::string& text) { o.time = planet::utc_from_iso8601(text, where); });
 }
 
@@ -123,6 +125,12 @@ void add_view_options(CLI::App& command, RenderOptions& o) {
                   o.pitch = parse_angle(where, text, {-90, 90});
               });
     add_lens_options(command, o);
+}
+
+void complete_view_options(const CLI::App& command, RenderOptions& o) {
+    if (o.height && command.count("--pitch") == 0) o.pitch = 0;
+    if (command.count("--at") > 0 && command.count("--time") == 0)
+        o.time = morning_at(o.at, o.height ? *o.height : o.range.value_or(whole_globe_range(o.fov)));
 }
 
 void add_elevation_options(CLI::App& command, EarthSources& sources) {

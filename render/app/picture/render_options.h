@@ -68,7 +68,8 @@ struct RenderOptions {
     double fov = 40 * planet::degrees;     ///< rad, across the shorter side of the picture, 1..150 degrees
     PictureSize size{1920, 1080};
 
-    /// Places the sun and the stars. Default 2026-06-21T09:00:00Z: the June solstice, morning over Africa.
+    /// Places the sun and the stars. Default 2026-06-21T09:00:00Z: the June solstice, morning over Africa. Commands take
+    /// morning_at() for a place that is given without a time.
     planet::UtcTime time = std::chrono::sys_days{std::chrono::year{2026} / 6 / 21} + std::chrono::hours{9};
 
     double exaggeration = 1;                     ///< of heights, 0..100
@@ -112,6 +113,9 @@ void add_lens_options(CLI::App& command, RenderOptions& options);
 
 /// Adds --at to --time.
 void add_view_options(CLI::App& command, RenderOptions& options);
+
+/// After parsing: what follows from options that were given for those of add_view_options() that were not.
+void complete_view_options(const CLI::App& command, RenderOptions& options);
 
 /// Adds what is drawn and how well, and the sources: all the others but --output and --json.
 void add_look_options(CLI::App& command, RenderOptions& options);

@@ -14,6 +14,7 @@
 #include "render/app/mesh/raster_frames.h"
 #include "render/app/normals.h"
 #include "render/app/progress.h"
+#include "render/app/temporary_names.h"
 #include "render/app/tin/tin_gpu_measure.h"
 #include "render/app/tin/tin_source.h"
 #include "render/app/tin/tin_written.h"
@@ -67,7 +68,7 @@ class TinMaker {
     }
     std::unique_ptr<planet::RasterWriter> open_error_grid() const {
         if (!command_.error_grid) return nullptr;
-        return std::make_unique<planet::RasterWriter>(command_.error_grid->string(), *source_.raster());
+        return std::make_unique<planet::RasterWriter>(command_.error_grid->string(), *source_.raster(), make_listed);
     }
     HeightGrid read() {
         const auto step = report_.step("read");

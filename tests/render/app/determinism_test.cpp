@@ -27,7 +27,7 @@ constexpr View views[] = {
     {"antimeridian",
      "--size 320x180 --at -16.5,180 --range 800km --heading 200 --pitch -40 --samples 4"
      " --show mesh,levels,curve --time 2026-06-21T23:00:00Z"},
-    {"pole_at_night", "--size 180x320 --at -90,0 --height 300km --pitch -50"},
+    {"pole_at_night", "--size 180x320 --at -90,0 --height 300km --pitch -50 --time 2026-06-21T09:00:00Z"},
 };
 
 std::vector<std::string> ways_in() {

@@ -25,7 +25,7 @@ constexpr View views[] = {
     {"globe", "--show graticule --samples 1"},
     {"horizon", "--at 37.58,-105.49 --range 60km --heading 30 --pitch -8 --show graticule,mesh --samples 1"},
     {"ground", "--at 37.58,-105.49 --height 3 --heading 250 --show graticule --samples 4 --time 2026-06-21T13:00:00Z"},
-    {"stars", "--at -90,0 --height 300km --pitch -10"},
+    {"stars", "--at -90,0 --height 300km --pitch -10 --time 2026-06-21T09:00:00Z"},
 };
 
 class Poster : public testing::TestWithParam<View> {
