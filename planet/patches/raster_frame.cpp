@@ -130,7 +130,8 @@ bool RasterFrame::all_in_graticule(std::span<const glm::dvec2> at) const {
     const glm::dvec2 low = -first_, high = glm::dvec2(raster_->width - 1, raster_->height - 1) - first_;
     bool all = true;
     for (const glm::dvec2 p : at)
-        all &= p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y && p == glm::trunc(p);
+        all &= (p.x >= low.x) & (p.y >= low.y) & (p.x <= high.x) & (p.y <= high.y) & (p.x == std::floor(p.x)) &
+               (p.y == std::floor(p.y));
     return all;
 }
 

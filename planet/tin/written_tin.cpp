@@ -85,11 +85,19 @@ class TriangleSamples {
         shared_.clear();
         for_each_span(SortedTriangle(c, {0, 0, 0}), [&](int y, int first, int last) {
             const bool level = y == c[0].y || y == c[1].y || y == c[2].y;  // with a corner, perhaps a side
-            for (int x = first; x <= last; ++x) {
-                const glm::ivec2 p(x, y);
-                if (!grid_.valid(p) || (level && (p == c[0] || p == c[1] || p == c[2]))) continue;
-                samples_.push_back(p);
-                shared_.push_back(level || x == first || x == last);
+            if (level || grid_.has_void()) {
+                for (int x = first; x <= last; ++x) {
+                    const glm::ivec2 p(x, y);
+                    if (!grid_.valid(p) || p == c[0] || p == c[1] || p == c[2]) continue;
+                    samples_.push_back(p);
+                    shared_.push_back(level || x == first || x == last);
+                }
+            } else if (first <= last) {
+                const std::size_t begin = samples_.size(), n = static_cast<std::size_t>(last - first + 1);
+                samples_.resize(begin + n);
+                shared_.resize(begin + n, 0);
+                for (std::size_t i = 0; i < n; ++i) samples_[begin + i] = {first + static_cast<int>(i), y};
+                shared_[begin] = shared_[begin + n - 1] = 1;
             }
             return true;
         });

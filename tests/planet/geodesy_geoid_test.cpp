@@ -114,6 +114,27 @@ TEST(Geoid, NormalsAndBatchesGiveTheSameAsAngles) {
 
 // The cubics of two cells differ along the side between them: a place there must not change cells with the way its angles
 // are found.
+// Neighbours in one cell are worked out together: poles, sides of cells, the antimeridian and no places too.
+TEST(Geoid, BatchesOfAnglesGiveTheSameBits) {
+    const Geoid geoid(fs::path(OCTAGLOBE_SOURCE_DIR) / "data/egm96-15.pgm");
+    for (const double row : {-90.0, -89.99, -37.5, -0.1, 0.0, 12.25, 45.0, 89.8, 90.0, 91.0, std::nan("")})
+        for (const double start : {-181.0, -180.05, -106.0, -0.1, 0.0, 105.9, 179.95, 359.9})
+            for (const double step : {0.0, 1.0 / 1200, 0.3}) {
+                std::vector<double> latitude, longitude;
+                for (int i = 0; i < 150; ++i) {
+                    latitude.push_back((row - step * (i / 70)) * degrees);
+                    longitude.push_back((start + step * i) * degrees);
+                }
+                std::vector<GeoidUndulation> found(latitude.size());
+                geoid.undulations(latitude, longitude, found);
+                for (std::size_t i = 0; i < found.size(); ++i) {
+                    const double one = geoid.undulation(latitude[i], longitude[i]).m;
+                    EXPECT_TRUE(found[i].m == one || (std::isnan(found[i].m) && std::isnan(one)))
+                        << row << " " << start;
+                }
+            }
+}
+
 TEST(Geoid, OnSidesOfCellsNormalsTakeTheAnglesOfTheStandardLibrary) {
     const Folder folder;
     const Geoid geoid(folder.write("rough.pgm", pgm(24, 13, rough)));

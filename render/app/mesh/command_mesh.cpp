@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "planet/error.h"
+#include "planet/exporters/mesh_file.h"
 #include "render/app/arguments.h"
 #include "render/app/mesh/mesh_options.h"
 #include "render/app/mesh/mesh_output.h"
@@ -87,6 +88,9 @@ void add_where_to(CLI::App& command, MeshOptions& o) {
               [&](Where where, const std::string& text) {
                   o.datum = static_cast<planet::VerticalDatum>(parse_choice(where, text, {"egm96", "ellipsoid"}));
               });
+    add_value(command, "--drape", "FILE",
+              "A picture, put into a .glb: where its georeference says, else over the raster edge to edge",
+              [&](Where where, const std::string& text) { o.drape = file_name(where, text); });
     add_value(command, "--picture", "FILE", "A picture of the triangles: .png, .jpg or .tif",
               [&](Where where, const std::string& text) { o.picture = parse_picture_name(where, text); });
     add_mesh_picture_size(command, "Of the picture [1600 wide, as high as the terrain; the planet 1600x1600]",
@@ -100,6 +104,14 @@ void check_files(const MeshOptions& o) {
     const std::filesystem::path json = o.json;
     const bool twice = (o.output && (o.output == o.picture || *o.output == json)) || (o.picture && *o.picture == json);
     require(!twice, "mesh", "one file for two things", "--output, --picture and --json with a file each");
+}
+
+void check_drape(const MeshOptions& o) {
+    if (!o.drape) return;
+    require(!o.source.empty(), "--drape", "goes over a raster", "a raster");
+    require(o.output && planet::mesh_format(o.output->native()) == planet::MeshFormat::glb, "--drape",
+            "only a .glb holds a picture", "-o FILE.glb");
+    require(*o.drape != *o.output, "--drape", "would be overwritten", "another --output");
 }
 
 void check_removal(const MeshOptions& o) {
@@ -118,6 +130,7 @@ void check(const MeshOptions& o) {
     require(kinds == 1, "mesh", kinds == 0 ? "nothing to mesh" : "more than one thing to mesh",
             "a raster, or --planet, or --patches");
     check_files(o);
+    check_drape(o);
     if (!o.remove.empty()) return check_removal(o);
     require(o.columns == 0, "--patches", "without a vertex to remove", "--remove X,Y");
     require(o.max_deviation || o.max_triangles || o.level, "mesh", "no bound given",

@@ -38,6 +38,7 @@ struct MeshOptions {
     std::optional<std::filesystem::path> store{};  ///< of the planet, instead of the default Earth
 
     std::optional<std::filesystem::path> output{};
+    std::optional<std::filesystem::path> drape{};  ///< a picture, into a .glb of a raster
     std::optional<std::filesystem::path> picture{};
     std::optional<PictureSize> picture_size{};  ///< nothing: as the mesh is proportioned
     std::string json;

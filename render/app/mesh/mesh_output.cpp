@@ -38,7 +38,7 @@ MeshFrame MeshOutput::frame(bool planet) const {
 }
 
 void MeshOutput::write(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference,
-                       const planet::MeshRounding& rounding, Report& report) {
+                       const planet::MeshRounding& rounding, Report& report, const planet::MeshLooks& looks) {
     report.set("rounding_xy", rounding.xy);
     report.set("rounding_z_m", rounding.z);
     if (!file_) return;
@@ -49,7 +49,7 @@ void MeshOutput::write(const planet::SurfaceMesh& mesh, const planet::MeshRefere
             bytes += block.size();
             file_->append(block);
         },
-        mesh, reference, format_, rounding);
+        mesh, reference, format_, rounding, looks);
     report.set("output", options_.output->string());
     report.set("output_bytes", bytes);
 }

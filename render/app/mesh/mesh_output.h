@@ -28,7 +28,7 @@ class MeshOutput {
 
     /// The mesh, if one was asked for: to a temporary file until commit().
     void write(const planet::SurfaceMesh& mesh, const planet::MeshReference& reference,
-               const planet::MeshRounding& rounding, Report& report);
+               const planet::MeshRounding& rounding, Report& report, const planet::MeshLooks& looks = {});
     /// The picture, if one was asked for. Its size is set here: without --size as wide as ever, and as high as a plan of
     /// the whole mesh needs.
     void draw(MeshPicture picture, Report& report);

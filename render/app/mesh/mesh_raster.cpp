@@ -8,9 +8,11 @@
 #include "planet/error.h"
 #include "planet/patches/decimation.h"
 #include "planet/patches/patch_measure.h"
+#include "render/app/drape.h"
 #include "render/app/mesh/mesh_keep.h"
 #include "render/app/mesh/mesh_output.h"
 #include "render/app/mesh/raster_frames.h"
+#include "render/app/normals.h"
 
 namespace render {
 namespace {
@@ -32,8 +34,10 @@ class RasterMesher {
           output_(options),
           raster_(read()),
           patches_(*raster_, most_samples),
-          frame_(frame_of_raster(raster_, output_.frame(false), datum())) {
+          frame_(frame_of_raster(raster_, output_.frame(false), datum())),
+          map_(*raster_, options.drape ? options.drape->string() : "") {
         planet::check_frame(frame_.reference(), output_.format());
+        if (options.drape) drape_.emplace(*options.drape);
     }
 
     void run() {
@@ -212,7 +216,7 @@ class RasterMesher {
             surface_.level.push_back(
                 static_cast<std::uint8_t>(planet::bisection_level_of(cell, patches_.grid().root_bits())));
         if (frame_.mirrored()) turn_over();
-        output_.write(surface_, frame_.reference(), rounding_, report_);
+        output_.write(surface_, frame_.reference(), rounding_, report_, looks());
         fill_report();
         draw();
         output_.commit();
@@ -220,6 +224,19 @@ class RasterMesher {
                   << " vertices; deviation at most " << four_digits(achieved_.max + patches_.sample_rounding())
                   << " m, rms " << four_digits(achieved_.rms) << " m over " << grouped(achieved_.samples)
                   << " samples\n";
+    }
+
+    /// Of a draped mesh; nothing of others.
+    planet::MeshLooks looks() const {
+        planet::MeshLooks looks;
+        if (!drape_) return looks;
+        std::vector<glm::ivec2> samples;
+        samples.reserve(mesh_.vertices.size());
+        for (const planet::LatticeVertex& v : mesh_.vertices) samples.push_back(v.at);
+        looks.uv = texture_coordinates(map_.at(samples, {0, 0}));
+        looks.normals = normals_of(surface_);
+        looks.picture = drape_->whole();
+        return looks;
     }
 
     /// Rows that run south turn the lattice over.
@@ -263,6 +280,8 @@ class RasterMesher {
     std::shared_ptr<const planet::Raster> raster_;
     planet::PatchRaster patches_;
     planet::RasterFrame frame_;
+    const DrapeMap map_;
+    std::optional<Drape> drape_;
     planet::PlacedSamples samples_;
     std::vector<glm::ivec2> kept_, at_poles_;
 

@@ -5,8 +5,9 @@
 #include <optional>
 
 #include "planet/tin/tiled_tin.h"
+#include "render/app/drape.h"
+#include "render/app/normals.h"
 #include "render/app/progress.h"
-#include "render/app/tin/tin_looks.h"
 #include "render/app/tin/tin_source.h"
 #include "render/app/tin/tin_written.h"
 

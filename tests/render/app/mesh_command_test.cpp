@@ -230,6 +230,23 @@ TEST_F(MeshCommand, WhatIsNoHeightIsLeftOut) {
     }
 }
 
+TEST_F(MeshCommand, DrapesLieWhereTheySay) {
+    hilly_terrain().write(folder_ / "dem.vrt");
+    planet::write_image((folder_ / "photo.png").string(), {200, 100, 3, std::vector<std::uint8_t>(60'000, 90)});
+    std::ofstream(folder_ / "photo.png.aux.xml")
+        << "<PAMDataset><SRS>EPSG:32632</SRS><GeoTransform>560000,400,0,5560000,0,-600</GeoTransform></PAMDataset>";
+    mesh("dem.vrt --max-deviation 20 --frame utm -o t.glb --drape photo.png");
+    planet::MeshLooks looks;
+    const SurfaceMesh mesh = planet::read_mesh((folder_ / "t.glb").string(), nullptr, &looks);
+    EXPECT_EQ(looks.picture, content(folder_ / "photo.png"));
+    EXPECT_EQ(looks.normals.size(), mesh.vertices.size());
+    ASSERT_EQ(looks.uv.size(), mesh.vertices.size());
+    for (std::size_t i = 0; i < looks.uv.size(); ++i) {
+        EXPECT_NEAR(static_cast<double>(looks.uv[i].x), (mesh.vertices[i].x - 560000) / 80000, 1e-5);
+        EXPECT_NEAR(static_cast<double>(looks.uv[i].y), (5560000 - mesh.vertices[i].y) / 60000, 1e-5);
+    }
+}
+
 TEST_F(MeshCommand, HeightmapsNeedNoPlace) {
     const auto grey = [](int x, int y) {
         return static_cast<unsigned>(100 + 50 * std::sin(0.4 * x) * std::cos(0.3 * y));

@@ -1,18 +1,11 @@
 #pragma once
 // Runs `octaglobe refine` as a user does, on small meshes.
 
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
 #include "planet/exporters/conforming.h"
-#include "planet/exporters/mesh_file.h"
-#include "tests/render/app/program_process.h"
+#include "tests/render/app/command_report.h"
 #include "tests/render/app/terrain_files.h"
 
 namespace render {
-
-using Json = nlohmann::json;
 
 inline void write_mesh_file(const std::filesystem::path& path, const planet::SurfaceMesh& mesh,
                             const planet::MeshReference& reference = {}, const planet::MeshLooks& looks = {}) {
@@ -52,28 +45,16 @@ inline planet::MeshReference degrees_reference() {
     return reference;
 }
 
-class RefineCommandTest : public testing::Test {
+class RefineCommandTest : public CommandTest {
   protected:
     /// octaglobe refine ARGUMENTS; its report.
-    Json refine(const std::string& arguments) {
-        const Outcome outcome = run(folder_.path(), words("refine " + arguments + " --json report.json"));
-        EXPECT_EQ(outcome.status, 0) << arguments << ": " << outcome.err;
-        EXPECT_EQ(outcome.err, "");
-        if (outcome.status != 0) return {};
-        return Json::parse(content(folder_ / "report.json"));
-    }
+    Json refine(const std::string& arguments) { return report_of("refine " + arguments); }
     planet::SurfaceMesh read(const std::string& name, planet::MeshLooks* looks = nullptr) const {
         planet::SurfaceMesh mesh = planet::read_mesh((folder_.path() / name).string(), nullptr, looks);
         EXPECT_EQ(planet::conforming_fault(mesh), std::nullopt) << name;
         return mesh;
     }
-
-    const ScratchFolder folder_;
 };
-
-inline double number(const Json& report, const char* key) {
-    return report.at(key).get<double>();
-}
 
 inline double longest_side(const planet::SurfaceMesh& mesh) {
     double longest = 0;

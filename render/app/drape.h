@@ -1,26 +1,15 @@
 #pragma once
-// What the .glb of a TIN shows: normals, texture coordinates, a draped picture.
+// A picture draped over a raster: where it lies, and the parts of it that meshes show.
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "planet/elevation/image.h"
-#include "planet/exporters/mesh_file.h"
-#include "planet/patches/raster_frame.h"
-#include "planet/tin/height_grid.h"
+#include "planet/elevation/raster.h"
 
 namespace render {
-
-/// Of unit length, by vertex: those of the triangles around it, by their areas.
-std::vector<glm::vec3> normals_of(const planet::SurfaceMesh& mesh);
-
-/// Of the ground at samples, from those up to ground_reach away: the same bits from any window that has them.
-/// @param frame of the grid's window
-std::vector<glm::vec3> ground_normals(const planet::HeightGrid& grid, const planet::RasterFrame& frame,
-                                      const std::vector<glm::ivec2>& samples);
-
-/// How far away samples tell ground_normals().
-inline constexpr int ground_reach = 8;
 
 /// Where samples lie in a picture, in shares of its width and height from the top left: by its georeference, in whatever
 /// CRS; one without a CRS is in the raster's. A picture without either, or none, covers the raster from edge to edge of its
