@@ -1,11 +1,11 @@
 #pragma once
 // Reading and writing pictures through OpenImageIO, which is in a module of its own (module.h).
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "planet/elevation/image.h"
+#include "planet/elevation/make_file.h"
 
 namespace planet {
 
@@ -26,6 +26,7 @@ FloatImage read_float_image(const std::string& path, const ImageOptions& options
 struct WriteOptions {
     int png_compression = 2;  ///< 0..9
     int jpeg_quality = 92;    ///< 1..100
+    MakeFile make_file{};     ///< makes the temporary file
 };
 
 enum class SampleType { uint8, uint16, float32 };
@@ -45,9 +46,6 @@ class ImageWriter {
 
     /// The next rows, samples of the type given, interleaved, tightly packed. Throws Error if they cannot be written.
     void write_rows(const void* rows, int count);
-    /// The name of the temporary file.
-    const std::filesystem::path& temporary() const;
-
     /// After the last row: the file is there. Throws Error if it cannot be.
     void finish();
 

@@ -53,6 +53,7 @@ std::filesystem::path temporary_beside(const std::filesystem::path& file) {
 
 struct ImageWriter::State {
     std::filesystem::path file, temporary;
+    std::shared_ptr<void> made;
     std::string shown_as;
     std::unique_ptr<ImageSink> sink;
     int rows_left = 0;
@@ -83,7 +84,12 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height, int cha
     state_->rows_left = height;
     state_->temporary = temporary_beside(state_->file);
     d.file = state_->temporary.string();
-    state_->sink = image_driver(d.format).create(d);
+    const ImageDriver& driver = image_driver(d.format);
+    const auto make = [&] { state_->sink = driver.create(d); };
+    if (options.make_file)
+        state_->made = options.make_file(state_->temporary, make);
+    else
+        make();
 }
 
 ImageWriter::~ImageWriter() = default;
@@ -96,10 +102,6 @@ void ImageWriter::write_rows(const void* rows, int count) {
     state_->rows_left -= count;
 }
 
-const std::filesystem::path& ImageWriter::temporary() const {
-    return state_->temporary;
-}
-
 void ImageWriter::finish() {
     assert(state_->rows_left == 0);
     state_->sink->close();
@@ -108,6 +110,7 @@ void ImageWriter::finish() {
     std::filesystem::rename(state_->temporary, state_->file, failed);
     if (failed) throw Error(Fault::bad_usage, state_->shown_as, "cannot be written: " + failed.message());
     state_->temporary.clear();
+    state_->made.reset();
 }
 
 namespace {

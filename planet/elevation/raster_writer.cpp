@@ -26,7 +26,8 @@ bool is_tiff(const fs::path& path) {
 
 }  // namespace
 
-RasterWriter::RasterWriter(const std::string& path, const RasterHeader& like) : shown_as_(path) {
+RasterWriter::RasterWriter(const std::string& path, const RasterHeader& like, const MakeFile& make_file)
+    : shown_as_(path) {
     if (!is_tiff(path)) throw Error(Fault::bad_usage, path, "is not a raster format that is written", ".tif");
     std::error_code failed;
     file_ = fs::weakly_canonical(fs::absolute(path), failed);  // a link stays one
@@ -40,7 +41,12 @@ RasterWriter::RasterWriter(const std::string& path, const RasterHeader& like) : 
     const fs::path temporary =
         file_.parent_path() / file_.filename().concat("." + std::to_string(getpid()) + ".part.tif");
     temporary_ = temporary;
-    sink_ = driver().create(temporary.string(), path, like);
+    const RasterSinkDriver& sinks = driver();
+    const auto make = [&] { sink_ = sinks.create(temporary.string(), path, like); };
+    if (make_file)
+        made_ = make_file(temporary, make);
+    else
+        make();
 }
 
 RasterWriter::~RasterWriter() {
@@ -60,6 +66,7 @@ void RasterWriter::finish() {
     fs::rename(temporary_, file_, failed);
     if (failed) throw Error(Fault::bad_usage, shown_as_, "cannot be written: " + failed.message());
     temporary_.clear();
+    made_.reset();
 }
 
 }  // namespace planet

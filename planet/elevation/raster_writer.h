@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "planet/elevation/make_file.h"
 #include "planet/elevation/raster_io.h"
 
 namespace planet {
@@ -33,7 +34,8 @@ class RasterSinkDriver {
 class RasterWriter {
   public:
     /// Throws Error(bad_usage) for a name that does not end in .tif or .tiff, or a place that cannot be written.
-    RasterWriter(const std::string& path, const RasterHeader& like);
+    /// @param make_file makes the temporary file
+    RasterWriter(const std::string& path, const RasterHeader& like, const MakeFile& make_file = {});
     ~RasterWriter();
     RasterWriter(const RasterWriter&) = delete;
     RasterWriter& operator=(const RasterWriter&) = delete;
@@ -46,6 +48,7 @@ class RasterWriter {
   private:
     std::string shown_as_;
     std::filesystem::path file_, temporary_;
+    std::shared_ptr<void> made_;
     std::unique_ptr<RasterSink> sink_;
 };
 

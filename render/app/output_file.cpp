@@ -30,13 +30,13 @@ OutputFile::OutputFile(std::string where, fs::path target, fs::path known_as)
     for (int attempt = 0; descriptor_ < 0; ++attempt) {
         temporary_ = target_;
         temporary_ += "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".part";
-        listed_ = TemporaryName(temporary_);  // before it is there: a signal may come at once
-        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor_ < 0 && (errno != EEXIST || attempt == 100)) {
+        listed_ = TemporaryName(temporary_, [&] {
+            descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
             const int error = errno;
+            if (descriptor_ >= 0 || (error == EEXIST && attempt < 100)) return;
             temporary_.clear();
             fail(error);
-        }
+        });
     }
 }
 

@@ -20,15 +20,16 @@ OutputFolder::OutputFolder(std::string where, fs::path target) : where_(std::mov
     const fs::file_status status = fs::status(target_, ignored);
     if (fs::exists(status) && (!fs::is_directory(status) || !fs::is_empty(target_, ignored)))
         fail(fs::is_directory(status) ? "is there, and not empty" : "is there, and no folder");
-    for (int attempt = 0;; ++attempt) {
+    for (int attempt = 0, made = -1; made != 0; ++attempt) {
         temporary_ = target_;
         temporary_ += "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".part";
-        listed_ = TemporaryName(temporary_);  // before it is there: a signal may come at once
-        if (::mkdir(temporary_.c_str(), 0777) == 0) return;
-        if (errno == EEXIST && attempt < 100) continue;
-        const int error = errno;
-        temporary_.clear();
-        fail("cannot be made: " + std::generic_category().message(error));
+        listed_ = TemporaryName(temporary_, [&] {
+            made = ::mkdir(temporary_.c_str(), 0777);
+            const int error = errno;
+            if (made == 0 || (error == EEXIST && attempt < 100)) return;
+            temporary_.clear();
+            fail("cannot be made: " + std::generic_category().message(error));
+        });
     }
 }
 
@@ -38,6 +39,7 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::commit() {
+    const SignalsWait wait;                                  // a signal would empty it while it gets its name
     if (::rename(temporary_.c_str(), target_.c_str()) != 0)  // an empty folder is replaced
         fail("cannot be made: " + std::generic_category().message(errno));
     temporary_.clear();

@@ -91,18 +91,18 @@ void VideoEncoder::open_temporary() {
     if (const fs::path real = fs::weakly_canonical(target_, ignored); !ignored && !real.empty()) target_ = real;
     if (const auto status = fs::status(target_, ignored); fs::exists(status) && !fs::is_regular_file(status))
         fail("cannot be written: it is there, and no file");
-    for (int attempt = 0;; ++attempt) {
+    for (int attempt = 0; temporary_.empty(); ++attempt) {
         fs::path name = target_.stem();
         name += "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".part";
         name += target_.extension();
         const fs::path path = target_.parent_path() / name;
-        listed_ = TemporaryName(path);  // before it is there: a signal may come at once
-        const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file < 0 && errno == EEXIST && attempt < 100) continue;
-        if (file < 0) fail("cannot be written: " + reason(errno));
-        ::close(file);
-        temporary_ = path;
-        return;
+        listed_ = TemporaryName(path, [&] {
+            const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+            if (file < 0 && errno == EEXIST && attempt < 100) return;
+            if (file < 0) fail("cannot be written: " + reason(errno));
+            ::close(file);
+            temporary_ = path;
+        });
     }
 }
 
@@ -126,8 +126,10 @@ void VideoEncoder::start(const std::string& program, PictureSize size, double fp
     sigemptyset(&signals);
     sigaddset(&signals, SIGPIPE);
     posix_spawnattr_setsigdefault(&attributes, &signals);
+    sigemptyset(&signals);
+    posix_spawnattr_setsigmask(&attributes, &signals);  // here they wait
     // Of another group: Ctrl-C is for this program, which then ends ffmpeg.
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
 
     std::vector<std::string> words{program, "-hide_banner", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
                                    "-video_size", std::to_string(size.width) + "x" + std::to_string(size.height),
@@ -139,6 +141,7 @@ void VideoEncoder::start(const std::string& program, PictureSize size, double fp
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
+    const SignalsWait wait;
     const int failed = ::posix_spawn(&process_, program.c_str(), &files, &attributes, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
@@ -151,7 +154,7 @@ void VideoEncoder::start(const std::string& program, PictureSize size, double fp
 }
 
 int VideoEncoder::wait() {
-    int status = 0;
+    int status = -1;  // it stays so if a signal has come, whose handler ends the process
     while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
     }
     set_temporary_process(0);

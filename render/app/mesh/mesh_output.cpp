@@ -8,6 +8,7 @@
 #include "planet/error.h"
 #include "planet/exporters/reference_text.h"
 #include "render/app/mesh/raster_frames.h"
+#include "render/app/temporary_names.h"
 #include "render/gl/context.h"
 
 namespace render {
@@ -63,7 +64,7 @@ void MeshOutput::draw(MeshPicture picture, Report& report) {
         picture.height = fitting_height(picture, least_fitting_height, most_fitting_height);
     }
     const Context context = Context::create();
-    planet::write_image(options_.picture->string(), draw_mesh_picture(picture));
+    planet::write_image(options_.picture->string(), draw_mesh_picture(picture), {.make_file = make_listed});
     report.set("picture", options_.picture->string());
 }
 

@@ -19,8 +19,8 @@ class BandWriter {
     BandWriter(const RenderOptions& options, Steps& steps)
         : threads_(options.thread_count()),
           steps_(steps),
-          writer_(options.output.string(), options.drawn().width, options.drawn().height, 3, planet::SampleType::uint8),
-          listed_(writer_.temporary()) {}
+          writer_(options.output.string(), options.drawn().width, options.drawn().height, 3, planet::SampleType::uint8,
+                  {.make_file = make_listed}) {}
 
     /// @param band rows of RGB, top down
     void write(std::vector<std::uint8_t> band, int rows) {
@@ -33,14 +33,12 @@ class BandWriter {
     void finish() {
         if (writing_.valid()) writing_.get();
         steps_.time("write", [&] { writer_.finish(); });
-        listed_ = {};
     }
 
   private:
     unsigned threads_;
     Steps& steps_;
     planet::ImageWriter writer_;
-    TemporaryName listed_;
     std::future<void> writing_;
 };
 

@@ -14,6 +14,7 @@
 #include "render/app/query/query.h"
 #include "render/app/query/query_sight.h"
 #include "render/app/source_report.h"
+#include "render/app/temporary_names.h"
 
 namespace render {
 namespace {
@@ -98,7 +99,7 @@ void viewshed(Options& options) {
     }
     const auto step = report.step("write");
     if (picture)
-        planet::write_image(options.output.string(), picture_of(view));
+        planet::write_image(options.output.string(), picture_of(view), {.make_file = make_listed});
     else if (output)
         write(view, options, *output);
     report_damage(field, report);

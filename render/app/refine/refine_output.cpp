@@ -8,6 +8,7 @@
 #include "planet/error.h"
 #include "planet/exporters/reference_text.h"
 #include "planet/frames.h"
+#include "render/app/temporary_names.h"
 #include "render/gl/context.h"
 #include "render/picture/mesh_picture.h"
 
@@ -191,7 +192,7 @@ void RefineOutput::draw(std::span<const glm::dvec3> vertices, Triangles triangle
         picture.height = fitting_height(picture, least_fitting_height, most_fitting_height);
     }
     const Context context = Context::create();
-    planet::write_image(command_.picture->string(), draw_mesh_picture(picture));
+    planet::write_image(command_.picture->string(), draw_mesh_picture(picture), {.make_file = make_listed});
     report_.set("picture", command_.picture->string());
 }
 

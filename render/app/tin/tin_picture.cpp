@@ -9,6 +9,7 @@
 #include "planet/elevation/image_io.h"
 #include "planet/error.h"
 #include "planet/tin/triangle_scan.h"
+#include "render/app/temporary_names.h"
 #include "render/picture/stroke_coverage.h"
 #include "render/picture/stroke_text.h"
 
@@ -340,7 +341,7 @@ planet::Image draw_tin_steps(const planet::HeightGrid& grid, glm::dvec2 shape, p
 
 void write_tin_steps(const planet::HeightGrid& grid, glm::dvec2 shape, const planet::TinOptions& options,
                      const std::vector<std::size_t>& stages, const std::string& path) {
-    planet::write_image(path, draw_tin_steps(grid, shape, options, stages));
+    planet::write_image(path, draw_tin_steps(grid, shape, options, stages), {.make_file = make_listed});
 }
 
 }  // namespace render

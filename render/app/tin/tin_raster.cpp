@@ -12,6 +12,7 @@
 #include "render/app/mesh/mesh_output.h"
 #include "render/app/mesh/raster_frames.h"
 #include "render/app/progress.h"
+#include "render/app/temporary_names.h"
 #include "render/app/tin/tin_gpu_measure.h"
 #include "render/app/tin/tin_looks.h"
 #include "render/app/tin/tin_source.h"
@@ -66,7 +67,7 @@ class TinMaker {
     }
     std::unique_ptr<planet::RasterWriter> open_error_grid() const {
         if (!command_.error_grid) return nullptr;
-        return std::make_unique<planet::RasterWriter>(command_.error_grid->string(), *source_.raster());
+        return std::make_unique<planet::RasterWriter>(command_.error_grid->string(), *source_.raster(), make_listed);
     }
     HeightGrid read() {
         const auto step = report_.step("read");
@@ -138,7 +139,6 @@ class TinMaker {
         goal.format = format_;
         goal.by_sample = error_grid_ != nullptr;
         if (command_.base) goal.floor = floor_below(*heights_, frame_, *command_.base);
-        goal.features = features_;
         WrittenTin tin = as_written(std::move(made.mesh), *heights_, frame_, goal);
         if (!tin.kept && !tin.mendable) refuse_bound(*command_.max_deviation, tin.deviation_max, format_);
         if (!tin.kept) end_ = planet::GreedyEnd::budget;  // what would mend it is more than there may be

@@ -17,6 +17,7 @@
 #include "render/app/figures.h"
 #include "render/app/mesh/mesh_output.h"
 #include "render/app/output_folder.h"
+#include "render/app/temporary_names.h"
 #include "render/app/tin/tin_budget.h"
 #include "render/app/tin/tin_tile.h"
 #include "render/app/tin/tin_tile_samples.h"
@@ -62,7 +63,8 @@ class TinFolder {
           tiling_(maker_.tiling()),
           figures_(tiling_.count()) {
         if (command.error_grid)
-            error_grid_ = std::make_unique<planet::RasterWriter>(command.error_grid->string(), *source_.raster());
+            error_grid_ =
+                std::make_unique<planet::RasterWriter>(command.error_grid->string(), *source_.raster(), make_listed);
         samples_.emplace(tiling_, error_grid_.get());
     }
 

@@ -8,6 +8,7 @@
 #include "planet/elevation/image_io.h"
 #include "planet/error.h"
 #include "planet/geodesy/geodetic.h"
+#include "render/app/temporary_names.h"
 #include "render/app/view/view_line.h"
 #include "render/app/view/viewer_session.h"
 
@@ -354,7 +355,8 @@ void ViewerSession::save_screenshot() {
     gl().BindFramebuffer(GL_READ_FRAMEBUFFER, 0);
     gl().ReadBuffer(GL_BACK);
     gl().ReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
-    planet::ImageWriter writer(options_.screenshot.string(), width, height, 3, planet::SampleType::uint8);
+    planet::ImageWriter writer(options_.screenshot.string(), width, height, 3, planet::SampleType::uint8,
+                               {.make_file = make_listed});
     for (int y = height; y-- > 0;) writer.write_rows(pixels.data() + static_cast<std::size_t>(y) * row, 1);
     writer.finish();
 }

@@ -8,6 +8,7 @@
 #include "planet/elevation/image_io.h"
 #include "planet/error.h"
 #include "planet/geodesy/geodetic.h"
+#include "render/app/temporary_names.h"
 #include "render/app/view/view_line.h"
 #include "render/app/view/viewer_session.h"
 
@@ -19,7 +20,8 @@ void ViewerSession::save_picture() {
     std::erase(name, ':');
     const std::vector<std::uint8_t> rgb = frame_.rgb();
     try {
-        planet::ImageWriter writer(name, frame_.width(), frame_.height(), 3, planet::SampleType::uint8);
+        planet::ImageWriter writer(name, frame_.width(), frame_.height(), 3, planet::SampleType::uint8,
+                                   {.make_file = make_listed});
         writer.write_rows(rgb.data(), frame_.height());
         writer.finish();
         notice("Saved " + name);
