@@ -14,8 +14,8 @@ namespace render {
 
 struct LayerName {
     std::string text;
-    glm::dvec3 normal{0, 0, 1};  ///< geodetic, of its place
-    bool of_point = false;       ///< beside a mark, else over its place
+    glm::dvec3 normal{0, 0, 1};                                                ///< geodetic, of its place
+    enum class Place { middle, beside_mark, above_right } at = Place::middle;  ///< of the text, about its place
 };
 
 struct Layer {

@@ -13,6 +13,7 @@ using planet::wgs84;
 
 constexpr std::size_t most_labels = 400;
 constexpr double gap_px = 6, beside_mark_px = 9;
+constexpr glm::dvec2 above_right_px(6, -10);
 
 struct Box {
     double left, top, right, bottom;
@@ -21,6 +22,14 @@ struct Box {
                other.top < bottom + gap_px;
     }
 };
+
+/// From a name's place to its text's left middle, pixels.
+glm::dvec2 offset(LayerName::Place place, double width, double size) {
+    const double scale = size / label_size_px;
+    if (place == LayerName::Place::beside_mark) return {beside_mark_px * scale, 0};
+    if (place == LayerName::Place::above_right) return {above_right_px.x * scale, above_right_px.y * scale};
+    return {-0.5 * width, 0};
+}
 
 /// Whether the ground hides a place from the eye: looked at in steps that grow with the distance from the place.
 bool is_hidden(const glm::dvec3& place, const Camera& camera, const DrapeGround& ground) {
@@ -52,13 +61,15 @@ std::vector<PlacedLabel> place_labels(std::span<const Layer* const> layers, cons
             const auto at = screen_from_ecef(camera, place);
             if (!at || at->x < 0 || at->y < 0 || at->x > camera.width || at->y > camera.height) continue;
             const double width = width_of(name.text);
-            const double left =
-                std::round(name.of_point ? at->x + beside_mark_px * size / label_size_px : at->x - 0.5 * width);
-            const Box box{left, at->y - 0.5 * size, left + width, at->y + 0.5 * size};
+            const glm::dvec2 start = glm::dvec2(*at) + offset(name.at, width, size);
+            const double left = std::round(start.x), middle = std::round(start.y);
+            const Box box{left, middle - 0.5 * size, left + width, middle + 0.5 * size};
+            // A line has other places for its name than one where it would be cut off.
+            if (name.at == LayerName::Place::above_right && (box.right > camera.width || box.top < 0)) continue;
             if (std::ranges::any_of(boxes, [&](const Box& b) { return b.touches(box); })) continue;
             if (is_hidden(place, camera, ground)) continue;
             boxes.push_back(box);
-            labels.push_back({&name.text, {left, std::round(at->y)}, static_cast<float>(width)});
+            labels.push_back({&name.text, {left, middle}, static_cast<float>(width)});
         }
     return labels;
 }

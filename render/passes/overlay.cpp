@@ -5,6 +5,7 @@
 
 #include "planet/geodesy/geodetic.h"
 #include "planet/octahedron/octahedron_map.h"
+#include "render/layers/graticule.h"
 #include "render/passes/terrain.h"
 
 namespace render {
@@ -89,14 +90,15 @@ void OverlayPass::upload(const planet::Segments& segments, const planet::TileSou
     array_.set_vertices(0, vertices_, sizeof(OverlayVertex), attributes);
 }
 
-void OverlayPass::draw(const Camera& camera, const PicturePart& part) {
+void OverlayPass::draw(const Camera& camera, const PicturePart& part, double pixel_scale) {
     if (count_ == 0) return;
     program_.use();
     set_grid_camera(program_, camera, part);
     const GLint fill = show_.deviations ? 3 : show_.segments ? 2 : show_.levels ? 1 : 0;
     program_.set("show", glm::ivec3(show_.mesh, fill, show_.curve));
     program_.set("eye", glm::vec3(camera.eye));
-    program_.set("graticule", show_.graticule ? static_cast<float>(graticule_step(camera)) : 0.0f);
+    program_.set("pixel_scale", static_cast<float>(pixel_scale));
+    program_.set("graticule", show_.graticule ? static_cast<float>(graticule_step(camera, pixel_scale)) : 0.0f);
     gl().Enable(GL_DEPTH_TEST);
     gl().DepthFunc(GL_GEQUAL);
     gl().DepthMask(GL_FALSE);
@@ -112,16 +114,6 @@ void OverlayPass::draw(const Camera& camera, const PicturePart& part) {
     gl().Disable(GL_POLYGON_OFFSET_FILL);
     gl().Disable(GL_CULL_FACE);
     gl().DepthMask(GL_TRUE);
-}
-
-double graticule_step(const Camera& camera) {
-    constexpr double least_px = 110;
-    constexpr double steps[] = {1 / 60.0, 2 / 60.0, 5 / 60.0, 10 / 60.0, 0.5, 1, 2, 5, 10, 15, 30};
-    const double height = std::max(planet::height_from_ecef(planet::wgs84, camera.eye).m, 1.0);
-    for (const double step : steps)
-        if (step * planet::degrees * planet::wgs84.a * camera.focal_px / height > least_px)
-            return step * planet::degrees;
-    return 30 * planet::degrees;
 }
 
 }  // namespace render

@@ -22,7 +22,8 @@ class OverlayPass {
     void upload(const planet::Segments& segments, const planet::TileSource& tiles);
 
     /// Blends over the terrain, which must have been drawn with the same camera.
-    void draw(const Camera& camera, const PicturePart& part);
+    /// @param pixel_scale of widths: below 1 where the picture is shown larger
+    void draw(const Camera& camera, const PicturePart& part, double pixel_scale);
 
   private:
     Show show_;
@@ -31,8 +32,5 @@ class OverlayPass {
     Buffer vertices_;
     GLsizei count_ = 0;
 };
-
-/// Between lines of the graticule, rad: such that some tens of pixels lie between them below the eye.
-double graticule_step(const Camera& camera);
 
 }  // namespace render

@@ -5,6 +5,7 @@
 uniform ivec3 show;       ///< sides; what colours mean: 0 none, 1 levels, 2 segments, 3 deviations; curve
 uniform vec3 eye;         ///< ecef, m
 uniform float graticule;  ///< rad between its lines; 0: none
+uniform float pixel_scale;  ///< of widths: below 1 where the picture is shown larger
 
 in vec3 barycentric;
 in vec3 view;
@@ -29,9 +30,11 @@ vec3 fill_color() {
     return deviation_color(float(of_triangle >> 14 & 255u) / 255.0);
 }
 
-/// Coverage of a line `width` pixels wide at distance |d| in the units of d. @param slope |gradient of d| per pixel
+/// Coverage of a line `width` pixels wide as shown at distance |d| in the units of d. One thinner than a pixel as drawn is
+/// as much fainter. @param slope |gradient of d| per pixel
 float line(float d, float slope, float width) {
-    return 1.0 - smoothstep(0.5 * width - 0.5, 0.5 * width + 0.5, abs(d) / max(slope, 1.0e-9));
+    width *= pixel_scale;
+    return min(width, 1.0) * (1.0 - smoothstep(0.5 * width - 0.5, 0.5 * width + 0.5, abs(d) / max(slope, 1.0e-9)));
 }
 
 /// Lines fade where triangles are hardly larger than the lines.

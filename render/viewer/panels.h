@@ -25,12 +25,6 @@ struct HelpGroup {
     std::vector<HelpLine> lines;
 };
 
-/// Text at a place of the picture, such as of a line of the graticule.
-struct Label {
-    float x = 0, y = 0;  ///< pixels, the text's left middle
-    std::string text;
-};
-
 /// Something to switch in the settings.
 struct Switch {
     std::string name, key;
@@ -59,7 +53,6 @@ struct Panels {
     float scale_px = 0;        ///< its length; 0: no bar
     float compass = 0;         ///< heading, rad
     float tilt = 0;            ///< pitch above straight down, rad
-    std::vector<Label> labels;
 
     /// A line that fades after some seconds, and one that stays while something takes long.
     std::string notice;

@@ -11,6 +11,7 @@
 #include "render/layers/draped_lines.h"
 #include "render/layers/filled_polygons.h"
 #include "render/layers/glyphs.h"
+#include "render/layers/graticule.h"
 #include "render/layers/placed_labels.h"
 
 namespace render {
@@ -186,11 +187,14 @@ TEST(FilledPolygons, HolesAreOutside) {
     EXPECT_EQ(around(ring, 4, 10), 1);
 }
 
+constexpr auto beside_mark = LayerName::Place::beside_mark;
+
 TEST(Labels, DoNotTouchAndThoseOfHigherLayersComeFirst) {
     const Camera camera = above(0, 0, 1e5);
     Layer low, high;
-    for (int i = 0; i < 40; ++i) low.names.push_back({"low " + std::to_string(i), normal(0.01 * i - 0.2, 0), true});
-    high.names = {{"high", normal(0, 0), true}, {"hidden", normal(170, 0), true}};
+    for (int i = 0; i < 40; ++i)
+        low.names.push_back({"low " + std::to_string(i), normal(0.01 * i - 0.2, 0), beside_mark});
+    high.names = {{"high", normal(0, 0), beside_mark}, {"hidden", normal(170, 0), beside_mark}};
     const Layer* layers[] = {&low, &high};
     const auto width_of = [](const std::string& text) { return 8.0 * static_cast<double>(text.size()); };
     const auto labels = place_labels(layers, camera, level_ground(camera), 15, width_of);
@@ -207,7 +211,7 @@ TEST(Labels, AMountainHidesThem) {
     const glm::dvec3 n = normal(0, 0);
     const Camera level = make_camera(planet::ecef_from_normal(wgs84, n, {500}), n, 0, -3 * degrees, 800, 800, 800);
     Layer layer;
-    layer.names = {{"far", normal(0, 0.1), true}};
+    layer.names = {{"far", normal(0, 0.1), beside_mark}};
     const Layer* layers[] = {&layer};
     const auto width_of = [](const std::string&) { return 20.0; };
     DrapeGround ground = level_ground(level);
@@ -217,6 +221,47 @@ TEST(Labels, AMountainHidesThem) {
         return latitude > 0.04 && latitude < 0.06 ? 1000.0 : 0.0;
     };
     EXPECT_TRUE(place_labels(layers, level, ground, 15, width_of).empty());
+}
+
+std::vector<std::string> texts_of(const std::vector<LayerName>& names) {
+    std::vector<std::string> texts;
+    for (const LayerName& name : names) texts.push_back(name.text);
+    return texts;
+}
+
+TEST(Graticule, LinesAreNamedFromTheMiddleOn) {
+    const auto texts = texts_of(graticule_names(above(9, 41, 1e6), 5 * degrees));
+    ASSERT_GT(texts.size(), 5u);
+    EXPECT_EQ((std::vector<std::string>(texts.begin(), texts.begin() + 5)),
+              (std::vector<std::string>{"40\u00b0 N", "45\u00b0 N", "15\u00b0 E", "35\u00b0 N", "5\u00b0 E"}));
+    const auto minutes = texts_of(graticule_names(above(-7.49, 0.01, 1e5), 0.5 * degrees));
+    EXPECT_EQ(minutes.front(), "0\u00b0");
+    EXPECT_EQ(minutes[2], "7\u00b0 W");
+    EXPECT_EQ(minutes[4], "8\u00b0 W");
+    EXPECT_EQ(minutes[1], "0\u00b0 30\u2032 N");
+}
+
+// No parallel beyond 90 degrees, no meridian twice, no name where only sky is in the middle.
+TEST(Graticule, KnowsPolesTheAntimeridianAndTheSky) {
+    for (const auto& [longitude, latitude] : {std::pair(0.0, 90.0), {180.0, 0.0}, {-180.0, -70.0}}) {
+        const auto names = graticule_names(above(longitude, latitude, 2e7), 30 * degrees);
+        const auto texts = texts_of(names);
+        for (const std::string& text : texts) {
+            EXPECT_EQ(std::count(texts.begin(), texts.end(), text), 1) << text;
+            EXPECT_LE(std::atoi(text.c_str()), text.ends_with("N") || text.ends_with("S") ? 89 : 180) << text;
+        }
+    }
+    EXPECT_FALSE(graticule_names(above(180, 0, 2e7), 30 * degrees).empty());
+    const glm::dvec3 n = normal(0, 0);
+    const Camera up = make_camera(planet::ecef_from_normal(wgs84, n, {500}), n, 0, 20 * degrees, 800, 800, 800);
+    EXPECT_TRUE(graticule_names(up, degrees).empty());
+}
+
+TEST(Graticule, APictureThatIsShownLargerHasTheSameLines) {
+    Camera camera = above(0, 0, 3e5), quarter = camera;
+    quarter.focal_px *= 0.25;
+    EXPECT_EQ(graticule_step(camera, 1), graticule_step(quarter, 0.25));
+    EXPECT_LT(graticule_step(camera, 1), graticule_step(quarter, 1));
 }
 
 TEST(Labels, CharactersOfAnyBytes) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "planet/error.h"
 #include "planet/geodesy/earth_rotation.h"
 #include "planet/geodesy/geodetic.h"
+#include "render/layers/graticule.h"
 #include "render/picture/relief_patches.h"
 
 namespace render {
@@ -36,7 +38,17 @@ void GlobeLooks::link(std::span<const Star> stars, std::span<const std::vector<s
                       OverlayPass::Show show) {
     terrain_.emplace();
     sky_.emplace(stars, noise);
+    set_overlay(show);
+}
+
+void GlobeLooks::set_overlay(OverlayPass::Show show) {
     overlay_.emplace(show);
+    graticule_ = show.graticule;
+    if (!graticule_ || label_pass_) return;
+    try {
+        label_pass_.emplace();
+    } catch (const planet::Error&) {  // no font: nobody has asked for names, and lines are lines without
+    }
 }
 
 void GlobeLooks::set_layers(std::vector<const Layer*> layers, bool stencil) {
@@ -85,7 +97,7 @@ void GlobeLooks::draw_opaque(const Frame& frame) {
 void GlobeLooks::draw_blended(const Frame& frame, const Framebuffer& target) {
     sky_->bind(frame.camera, frame.part);
     if (mesh_pass_) mesh_pass_->draw(layers_, frame.camera, frame.part, look_of(frame));
-    overlay_->draw(frame.camera, frame.part);
+    overlay_->draw(frame.camera, frame.part, frame.pixel_scale);
     sky_->draw_stars(frame.camera, frame.part);
     if (!layers_.empty())
         layer_pass_->draw(layers_, {.camera = frame.camera,
@@ -93,7 +105,18 @@ void GlobeLooks::draw_blended(const Frame& frame, const Framebuffer& target) {
                                     .pixel_scale = frame.pixel_scale,
                                     .ground = frame.ground,
                                     .target = target});
-    if (label_pass_) label_pass_->draw(layers_, frame.camera, frame.part, frame.ground, frame.pixel_scale);
+    if (frame.labels) draw_labels(frame.camera, frame.part, frame.ground, frame.pixel_scale);
+}
+
+void GlobeLooks::draw_labels(const Camera& camera, const PicturePart& part, const DrapeGround& ground,
+                             double pixel_scale) {
+    if (!label_pass_) return;
+    std::vector<const Layer*> named = layers_;
+    if (graticule_) {
+        graticule_names_.names = graticule_names(camera, graticule_step(camera, pixel_scale));
+        named.insert(named.begin(), &graticule_names_);
+    }
+    label_pass_->draw(named, camera, part, ground, pixel_scale);
 }
 
 }  // namespace render

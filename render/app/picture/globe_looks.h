@@ -37,7 +37,7 @@ class GlobeLooks {
     Framebuffer::Options target_options(int samples) const {
         return {.color_format = GL_RGBA8, .samples = samples, .stencil = stencil_};
     }
-    void set_overlay(OverlayPass::Show show) { overlay_.emplace(show); }
+    void set_overlay(OverlayPass::Show show);
 
     /// Whether a camera can only see ground as coarse as the imagery: such pictures need one sample a pixel.
     bool from_afar(const Camera& camera, double exaggeration) const;
@@ -57,6 +57,7 @@ class GlobeLooks {
         double morph_reach = 0;  ///< see TerrainLook
         bool relief = false;     ///< heights as colours instead of the imagery
         double pixel_scale = 1;  ///< of widths: below 1 where the picture is shown larger
+        bool labels = true;
     };
     /// Draws the meshes of terrain() and overlay(), and layers, into what is bound: the target.
     void draw(const Frame& frame, const Framebuffer& target) {
@@ -66,6 +67,8 @@ class GlobeLooks {
     /// Ground and sky, as often over each other as may be; then, once, what blends over them.
     void draw_opaque(const Frame& frame);
     void draw_blended(const Frame& frame, const Framebuffer& target);
+    /// Names of layers, and of the graticule's lines, into what is bound.
+    void draw_labels(const Camera& camera, const PicturePart& part, const DrapeGround& ground, double pixel_scale = 1);
 
     TerrainPass& terrain() { return *terrain_; }
     OverlayPass& overlay() { return *overlay_; }
@@ -80,7 +83,8 @@ class GlobeLooks {
     std::optional<SkyPass> sky_;
     std::optional<OverlayPass> overlay_;
     std::vector<const Layer*> layers_;
-    bool stencil_ = false;
+    bool stencil_ = false, graticule_ = false;
+    Layer graticule_names_;                   ///< of the view that was drawn last
     std::optional<LayerPass> layer_pass_;     // once there are layers
     std::optional<LayerMeshPass> mesh_pass_;  // once there are meshes
     std::optional<LabelPass> label_pass_;     // once there are names

@@ -50,7 +50,7 @@ LoadedLayer read_layer(const std::filesystem::path& file, const std::string& lab
     for (const planet::FeatureName& name : features.names)
         layer.names.push_back(
             {name.text, planet::normal_from_geodetic(name.place.y * planet::degrees, name.place.x * planet::degrees),
-             name.of_point});
+             name.of_point ? LayerName::Place::beside_mark : LayerName::Place::middle});
     for (const glm::dvec3& point : features.points) layer.points.add({&point, 1});
     for (const auto& line : features.lines) layer.lines.add(line);
     for (const planet::Polygon& polygon : features.polygons) {

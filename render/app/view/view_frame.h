@@ -22,6 +22,8 @@ class ViewFrame {
     /// @return whether it is whole
     bool draw_settled(GlobeLooks& looks, const GlobeLooks::Frame& frame, double seconds);
     bool settled() const { return settled_; }
+    /// Whether the picture that is shown was settled. One that was not lacks its labels: they go over it in the window.
+    bool shows_still() const { return still_shown_; }
 
     /// The last whole picture over the window's framebuffer.
     void show(int width, int height) const;

@@ -242,7 +242,7 @@ void ViewerSession::step_view(double dt) {
 }
 
 void ViewerSession::update_globe() {
-    const Camera camera = resting_ ? data_.surface->camera(*resting_) : camera_;
+    const Camera camera = shown_camera();
     LiveMesh::Wanted wanted{.camera = camera, .at_rest = resting_.has_value(), .max_triangles = pace_->max_triangles()};
     wanted.culling = frozen_;
     mesh_changed_ = mesh_->update(wanted);
@@ -263,7 +263,7 @@ void ViewerSession::update_globe() {
 
 void ViewerSession::draw() {
     const bool changed = mesh_changed_ || air_changed_ || look_changed_;
-    const Camera camera = resting_ ? data_.surface->camera(*resting_) : camera_;
+    const Camera camera = shown_camera();
     const PicturePart whole{0, 0, camera.width, camera.height};
     DrapeGround ground = data_.surface->for_layers(mesh_->segments(), camera, whole);
     const GlobeLooks::Frame frame{.camera = camera,
@@ -298,6 +298,13 @@ void ViewerSession::draw() {
     mesh_changed_ = air_changed_ = look_changed_ = false;
 }
 
+/// Over a moving picture, whose pixels may be larger than the window's: letters would be soft.
+void ViewerSession::draw_labels() {
+    const Camera camera = shown_camera();
+    const PicturePart whole{0, 0, camera.width, camera.height};
+    looks_.draw_labels(camera, whole, data_.surface->for_layers(mesh_->segments(), camera, whole));
+}
+
 void ViewerSession::present() {
     if (!picture_new_ && !input_ && !panels_.wants_frame && !counts_frames() && !save_next_ &&
         window_.seconds() - noticed_at_ > 4 && window_.seconds() - last_swap_ < 0.5)
@@ -305,6 +312,7 @@ void ViewerSession::present() {
     gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl().Viewport(0, 0, window_.width(), window_.height());
     frame_.show(window_.width(), window_.height());
+    if (!frame_.shows_still()) draw_labels();
     fill_panels();
     window_.draw_panels(panels_);
     if (save_next_) save_screenshot();

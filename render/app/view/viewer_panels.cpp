@@ -48,14 +48,6 @@ Action action_of_switch(const std::string& name) {
     return Action::freeze_culling;
 }
 
-/// "45° N", "7° 30′ W"
-std::string line_text(double angle, char positive, char negative) {
-    const auto minutes = std::lround(std::abs(angle) / degrees * 60);
-    std::string text = std::to_string(minutes / 60) + "\xc2\xb0";
-    if (minutes % 60 != 0) text += " " + std::to_string(minutes % 60) + "\xe2\x80\xb2";
-    return minutes == 0 ? text : text + " " + (angle < 0 ? negative : positive);
-}
-
 std::string text_of_fact(const char* name, const std::string& value) {
     return std::string(name) + "\t" + value;
 }
@@ -75,7 +67,6 @@ void ViewerSession::fill_panels() {
     fill_status();
     if (panels_.statistics) fill_statistics();
     if (panels_.settings) fill_settings();
-    fill_labels();
 }
 
 void ViewerSession::fill_settings() {
@@ -141,38 +132,6 @@ std::string ViewerSession::text_under_cursor(const Pose& pose, const Lens& lens)
     const double height =
         mesh ? (p.h - N).m / render_.exaggeration : static_cast<double>(data_.surface->field.height(p.normal));
     return place + (mesh ? "mesh " : "") + heights_text({height}, planet::OrthometricHeight{height} + N, pixel_m);
-}
-
-/// Parallels are named where they meet the meridian next to the middle of the picture, and the other way around.
-void ViewerSession::fill_labels() {
-    panels_.labels.clear();
-    const Pose& pose = navigator_->pose();
-    const Lens lens = this->lens();
-    const auto middle = pick_.first_hit(pose.eye(), ray(pose, lens, lens.middle()));
-    if (!render_.shows(Overlay::graticule) || !middle) return;
-    const double step = graticule_step(camera_);
-    const planet::Geodetic about = planet::geodetic_from_normal(planet::normal_from_ecef(wgs84, *middle));
-    const double parallel = std::round(about.latitude / step) * step,
-                 meridian = std::round(about.longitude / step) * step;
-    const auto label = [&](double latitude, double longitude, std::string text) {
-        if (std::abs(latitude) > 89 * degrees) return;
-        const glm::dvec3 normal = planet::normal_from_geodetic(latitude, longitude);
-        const glm::dvec3 point = planet::ecef_from_normal(wgs84, normal, {data_.surface->ground(normal)});
-        // Not at the limb, where lines are foreshortened, and not over each other.
-        if (glm::dot(glm::normalize(pose.eye() - point), normal) < 0.25) return;
-        const auto at = pixel_of_point(pose, lens, point);
-        if (!at || at->x < 0 || at->y < 0 || at->x > lens.width - 80 || at->y > lens.height - 56) return;
-        for (const Label& l : panels_.labels)
-            if (std::abs(static_cast<double>(l.x) - at->x) < 64 && std::abs(static_cast<double>(l.y) - at->y) < 24)
-                return;
-        panels_.labels.push_back({static_cast<float>(at->x) + 6, static_cast<float>(at->y) - 10, std::move(text)});
-    };
-    for (int i = -12; i <= 12; ++i) {
-        const double latitude = parallel + i * step, longitude = meridian + i * step;
-        label(latitude, meridian, line_text(latitude, 'N', 'S'));
-        if (i != 0 && std::abs(i * step) < 180 * degrees)
-            label(parallel, longitude, line_text(std::remainder(longitude, 360 * degrees), 'E', 'W'));
-    }
 }
 
 void ViewerSession::fill_statistics() {

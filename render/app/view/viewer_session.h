@@ -50,6 +50,8 @@ class ViewerSession {
     void count_errors();
     Lens lens() const;
     double patience() const;
+    Camera shown_camera() const { return resting_ ? data_.surface->camera(*resting_) : camera_; }
+    void draw_labels();
     std::optional<glm::dvec3> point_under(const glm::dvec3& origin, const glm::dvec3& way);
     std::optional<glm::dvec3> mesh_at(const glm::dvec2& pixel) const;
     /// Whether the frames that were asked for are still being drawn.
@@ -71,7 +73,6 @@ class ViewerSession {
     void fill_panels();
     void fill_status();
     std::string text_under_cursor(const Pose& pose, const Lens& lens);
-    void fill_labels();
     void fill_statistics();
     void fill_settings();
     void take_panel_changes();

@@ -138,10 +138,6 @@ void PanelDrawing::draw(Panels& panels) {
 }
 
 void PanelDrawing::draw_overlay(Panels& panels) {
-    ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    for (const Label& label : panels.labels)
-        shaded_text(list, {std::round(label.x), std::round(label.y - 0.5f * ImGui::GetFontSize())}, ink,
-                    label.text.c_str());
     draw_status(panels);
     draw_scale_bar(panels);
     draw_compass(panels);
