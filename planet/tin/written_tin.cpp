@@ -33,7 +33,9 @@ std::vector<glm::dvec3> placed(const TinMesh& mesh, const HeightGrid& grid, cons
 double cotangent(const std::array<glm::dvec3, 3>& p, const glm::dvec3& metres_per_unit) {
     const glm::dvec3 a = (p[2] - p[1]) * metres_per_unit, b = (p[0] - p[2]) * metres_per_unit,
                      c = (p[1] - p[0]) * metres_per_unit;
-    return std::max({-glm::dot(b, c), -glm::dot(c, a), -glm::dot(a, b)}) / glm::length(glm::cross(a, b));
+    const double area = glm::length(glm::cross(a, b));
+    if (!(area > 0)) return std::numeric_limits<double>::infinity();
+    return std::max({-glm::dot(b, c), -glm::dot(c, a), -glm::dot(a, b)}) / area;
 }
 
 // Which of the triangles that hold a sample counts it. Where triangles are missing: the first to ask.
