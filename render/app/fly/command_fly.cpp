@@ -110,6 +110,7 @@ void fly(Options& o) {
         film = draw_film(o.film, plan, *output);
         output->finish();
     }
+    warn_of_layers(film.layers);
     for (const auto& line : film.damage)
         std::cerr << "octaglobe: warning: " << line << "; a coarser one stands in for it\n";
     fill(report, o.film, film);
