@@ -173,13 +173,16 @@ struct Geoid::Grid {
     bool is_beside_side(double latitude, double longitude) const;
 
   private:
-    /// The cubic of a cell.
-    struct Cell {
+    /// A cell by its north-west corner, none for a place that is not one, and where a place lies in it: in cells east
+    /// and south.
+    struct CellPlace {
         int left = -1, top = -1;
-        Terms t{};
+        double x = 0, y = 0;
     };
-    Cell cell(int left, int top) const;
-    double in_cell(Cell& last, double latitude, double longitude) const;
+    CellPlace cell_place(double latitude, double longitude) const;
+    /// The cubic of a cell.
+    Terms cubic(int left, int top) const;
+    double in_cell(const Terms& t, double x, double y) const;
 
     std::uint16_t* row(int y) { return samples.data() + static_cast<std::ptrdiff_t>(y + 1) * stride + 1; }
     const std::uint16_t* row(int y) const { return samples.data() + static_cast<std::ptrdiff_t>(y + 1) * stride + 1; }
@@ -217,20 +220,19 @@ void Geoid::Grid::fill(std::istream& in) {
     extend_columns(last + 1);
 }
 
-Geoid::Grid::Cell Geoid::Grid::cell(int left, int top) const {
+Terms Geoid::Grid::cubic(int left, int top) const {
     const Fit& fit = top == 0 ? north : top == header.height - 2 ? south : inner;
-    Cell made{left, top, {}};
+    Terms made{};
     for (int k = 0; k < stencil_size; ++k) {
         const double v = row(top + stencil[k].y)[left + stencil[k].x];
-        for (int i = 0; i < terms; ++i) made.t[i] += fit[k][i] * v;
+        for (int i = 0; i < terms; ++i) made[i] += fit[k][i] * v;
     }
     return made;
 }
 
-// @param last the cell that was needed last, replaced if another one is
-double Geoid::Grid::in_cell(Cell& last, double latitude, double longitude) const {
+Geoid::Grid::CellPlace Geoid::Grid::cell_place(double latitude, double longitude) const {
     constexpr double pi = std::numbers::pi;
-    if (!(std::abs(latitude) <= pi / 2) || !std::isfinite(longitude)) return std::numeric_limits<double>::quiet_NaN();
+    if (!(std::abs(latitude) <= pi / 2) || !std::isfinite(longitude)) return {};
     if (std::abs(longitude) > pi) longitude = std::remainder(longitude, 2 * pi);
     const int half_rows = (header.height - 1) / 2;
     double x = longitude * (header.width / (2 * pi)), y = half_rows - latitude * (half_rows / (pi / 2));
@@ -240,8 +242,10 @@ double Geoid::Grid::in_cell(Cell& last, double latitude, double longitude) const
     y -= top;
     const int left = column < 0 ? column + header.width : column >= header.width ? column - header.width : column;
     if (top == header.height - 2) y -= 1;  // that fit is about the pole
-    if (left != last.left || top != last.top) last = cell(left, top);
-    const Terms& t = last.t;
+    return {left, top, x, y};
+}
+
+double Geoid::Grid::in_cell(const Terms& t, double x, double y) const {
     const double grey = t[0] + x * (t[1] + x * (t[3] + x * t[6])) +
                         y * (t[2] + x * (t[4] + x * t[7]) + y * (t[5] + x * t[8] + y * t[9]));
     return header.offset + header.scale * grey;
@@ -254,13 +258,21 @@ bool Geoid::Grid::is_beside_side(double latitude, double longitude) const {
 }
 
 double Geoid::Grid::at(double latitude, double longitude) const {
-    Cell cell;
-    return in_cell(cell, latitude, longitude);
+    const CellPlace p = cell_place(latitude, longitude);
+    return p.left < 0 ? std::numeric_limits<double>::quiet_NaN() : in_cell(cubic(p.left, p.top), p.x, p.y);
 }
 
 void Geoid::Grid::at(std::span<const double> latitude, std::span<const double> longitude, GeoidUndulation* out) const {
-    Cell cell;
-    for (std::size_t i = 0; i < latitude.size(); ++i) out[i].m = in_cell(cell, latitude[i], longitude[i]);
+    Terms t{};
+    CellPlace last;
+    for (std::size_t i = 0; i < latitude.size(); ++i) {
+        const CellPlace p = cell_place(latitude[i], longitude[i]);
+        if (p.left != last.left || p.top != last.top) {
+            if (p.left >= 0) t = cubic(p.left, p.top);
+            last = p;
+        }
+        out[i].m = p.left < 0 ? std::numeric_limits<double>::quiet_NaN() : in_cell(t, p.x, p.y);
+    }
 }
 
 Geoid::Geoid(const std::filesystem::path& pgm) {
@@ -287,6 +299,12 @@ Geoid::Geoid(const std::filesystem::path& pgm) {
 
 GeoidUndulation Geoid::undulation(double latitude, double longitude) const {
     return {grid_->at(latitude, longitude)};
+}
+
+void Geoid::undulations(std::span<const double> latitudes, std::span<const double> longitudes,
+                        std::span<GeoidUndulation> out) const {
+    assert(latitudes.size() == out.size() && longitudes.size() == out.size());
+    grid_->at(latitudes, longitudes, out.data());
 }
 
 GeoidUndulation Geoid::undulation(const glm::dvec3& normal) const {

@@ -35,6 +35,9 @@ class Geoid {
     /// @param latitude  rad, geodetic
     /// @param longitude rad, any finite value
     GeoidUndulation undulation(double latitude, double longitude) const;
+    /// The same of many, in which neighbours follow each other: the same bits, faster. All spans of one length.
+    void undulations(std::span<const double> latitudes, std::span<const double> longitudes,
+                     std::span<GeoidUndulation> out) const;
     /// The same at a geodetic normal of any positive length.
     GeoidUndulation undulation(const glm::dvec3& normal) const;
     /// Many at once; out.size() == normals.size().

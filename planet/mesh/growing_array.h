@@ -2,8 +2,9 @@
 // Output storage of the walk: grows in large steps, is never cleared, costs no check per element.
 
 #include <cstddef>
-#include <cstring>
+#include <cstdlib>
 #include <memory>
+#include <new>
 #include <span>
 #include <type_traits>
 
@@ -19,9 +20,11 @@ class GrowingArray {
     void reserve_more(std::size_t more) {
         if (size_ + more <= capacity_) return;
         const std::size_t capacity = 2 * (size_ + more);
-        auto grown = std::make_unique_for_overwrite<T[]>(capacity);
-        if (size_ != 0) std::memcpy(grown.get(), data_.get(), size_ * sizeof(T));
-        data_ = std::move(grown);
+        // Large blocks are moved page by page, without copying, and pages not written yet take no memory.
+        T* const grown = static_cast<T*>(std::realloc(data_.get(), capacity * sizeof(T)));
+        if (!grown) throw std::bad_alloc();
+        static_cast<void>(data_.release());
+        data_.reset(grown);
         capacity_ = capacity;
     }
     /// For so many more there is room.
@@ -47,7 +50,10 @@ class GrowingArray {
     std::span<const T> span() const { return {data_.get(), size_}; }
 
   private:
-    std::unique_ptr<T[]> data_;
+    struct Free {
+        void operator()(T* data) const { std::free(data); }
+    };
+    std::unique_ptr<T[], Free> data_;
     std::size_t size_ = 0, capacity_ = 0;
 };
 

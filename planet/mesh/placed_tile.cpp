@@ -96,15 +96,19 @@ void PlacedTile::place_records(std::span<const glm::vec3> rounded, const Placeme
         const int level = root.bisection_level() + k;
         const auto first = layout.vertex_count[static_cast<std::size_t>(k)],
                    end = layout.vertex_count[static_cast<std::size_t>(k) + 1];
+        StoredRecord& most_here = most[static_cast<std::size_t>(k)];
         for (std::size_t v = first; v < end; ++v) {
             const glm::vec3& m = rounded[v];
             const StoredRecord s = stored_[v];
             SplitRecord& record = split.by_vertex_[v];
             record = {m.x, m.y, m.z, s.deviation, s.radius};
-            if (placement.exaggeration == 1.0 || !(s.deviation > 0)) continue;
-            record.deviation =
-                next_up(static_cast<float>(exaggeration.deviation(static_cast<double>(s.deviation), level)));
-            record.radius = next_up(static_cast<float>(exaggeration.radius(static_cast<double>(s.radius), level)));
+            if (placement.exaggeration != 1.0 && s.deviation > 0) {
+                record.deviation =
+                    next_up(static_cast<float>(exaggeration.deviation(static_cast<double>(s.deviation), level)));
+                record.radius = next_up(static_cast<float>(exaggeration.radius(static_cast<double>(s.radius), level)));
+            }
+            most_here.deviation = std::max(most_here.deviation, record.deviation);
+            most_here.radius = std::max(most_here.radius, record.radius);
         }
     }
 }

@@ -16,12 +16,18 @@ namespace planet {
 
 /// What one cell's split test reads: its split vertex (ecef, metres, at exaggerated height), deviation and radius.
 /// Both cells of a diamond hold the same bits. deviation 0: never split. Below 0: the diamond exists in the store, with
-/// the deviation -deviation, but not with the tiles that are in memory (store/resident_set.h): not split.
+/// the deviation -deviation, but not with the tiles that are in memory (streaming/resident_set.h): not split.
 struct SplitRecord {
     float x, y, z;
     float deviation;
     float radius;
 };
+
+/// As if the diamond existed.
+inline SplitRecord opened(SplitRecord record) {
+    record.deviation = std::abs(record.deviation);
+    return record;
+}
 
 /// Puts heights on the planet.
 struct Placement {
@@ -38,6 +44,10 @@ class TileSource;
 
 class PlacedTile {
   public:
+    struct StoredRecord {
+        float deviation = 0, radius = 0;  ///< metres
+    };
+
     PlacedTile(const Tile& tile, const Placement& placement);
     /// The same tile placed anew: the same bits as from the Tile it was made of, if that came from a store. Closed
     /// diamonds stay closed; no tile below is known.
@@ -83,12 +93,9 @@ class PlacedTile {
             const unsigned first = (i << levels) - (1u << depth_);
             return (exists_[first >> 6] >> (first & 63) << (64 - (1u << levels))) != 0;
         }
-        struct StoredRecord {
-            float deviation = 0, radius = 0;  // metres, not exaggerated
-        };
         struct Below {
             SplitRecord bound{};
-            StoredRecord stored;
+            StoredRecord stored;                      // not exaggerated
             mutable std::atomic<bool> known = false;  // whether the source has been asked
             mutable std::atomic<const PlacedTile*> tile = nullptr;
         };
@@ -106,6 +113,8 @@ class PlacedTile {
     std::vector<GridPosition> position;  ///< by vertex index
     std::vector<float> height;           ///< by vertex index, metres above the datum, not exaggerated
     bool damaged;
+    /// By relative level: no record has more than this deviation and this radius.
+    std::array<StoredRecord, tile_levels> most{};
 
     /// Whether the diamond of local cell i can be split now, and whether it is one of the store at all.
     bool is_open(unsigned i) const { return split[i].deviation > 0; }
@@ -142,7 +151,6 @@ class PlacedTile {
     std::size_t bytes() const;
 
   private:
-    using StoredRecord = ChildBounds::StoredRecord;
     void note_children(const Tile& tile);
     StoredRecord stored(std::size_t vertex) const;
     void place(const Placement& placement);
@@ -150,8 +158,9 @@ class PlacedTile {
     void bound_children(std::span<const glm::vec3> rounded, const Placement& placement);
     const PlacedTile* child_at(const TileSource& source, unsigned k) const;
 
-    std::vector<float> undulation_;     // by vertex index, metres: exact for tiles of stores. Empty: 0
-    std::vector<StoredRecord> stored_;  // by vertex index; empty where the records themselves are as stored
+    std::vector<float> undulation_;  // by vertex index, metres: exact for tiles of stores. Empty: 0
+    std::vector<StoredRecord>
+        stored_;  // not exaggerated, by vertex index; empty where the records themselves are as stored
 };
 
 /// The unit normals of a tile's lattice vertices, by vertex index, `depth` levels deep.

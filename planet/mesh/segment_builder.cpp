@@ -313,8 +313,8 @@ void SegmentBuilder::certify(BuiltSegment& segment) const {
                     radius = widened_lanes(&stack_.radius[at]), scaled = K * absolute(deviation),
                     distance = square_root(load_lanes(&stack_.distance2[at])), beyond = larger(distance - radius, zero);
         margin = smaller(margin, counted ? load_lanes(&stack_.margin[at]) : endless);
-        margin = smaller(margin, deviation > zero ? absolute(distance - (radius + scaled)) : endless);
-        least_reach = smaller(least_reach, deviation < zero ? beyond : endless);
+        margin = smaller(margin, deviation != zero ? absolute(distance - (radius + scaled)) : endless);
+        least_reach = smaller(least_reach, (deviation < zero) & (distance < radius + scaled) ? beyond : endless);
         ratio = larger(ratio, deviation != zero ? scaled / beyond : zero);
         deviation_max = larger(deviation_max, absolute(deviation));
     }

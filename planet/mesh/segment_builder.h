@@ -83,8 +83,8 @@ class SegmentBuilder {
     struct Compared {
         double distance2, reach;
     };
-    /// Leaves found and not yet in a segment, and what is to be certified of them: where deviation > 0, |eye - m| < radius
-    /// + K deviation must go on to fail; below 0, a tile is wanting that would go on; 0 cannot be split.
+    /// Leaves found and not yet in a segment, and what is to be certified of them: |eye - m| < radius + K |deviation| must
+    /// go on to fail, or to hold where a tile is wanting that would go on (deviation below 0); 0 cannot be split.
     struct LeafStack {
         GrowingArray<Leaf> leaf;
         GrowingArray<double> distance2;  ///< |eye - m|^2 of its record

@@ -7,6 +7,13 @@
 
 namespace planet {
 
+namespace {
+
+/// Room is made for them at once, see segments.cpp.
+constexpr std::size_t usual_nodes = 1 << 18;
+
+}  // namespace
+
 Sphere bounding_sphere(const PlacedTile& t, unsigned local) {
     if (local >> t.depth) local >>= 1;
     const SplitRecord s = t.split[local];
@@ -82,7 +89,7 @@ class SegmentTree::Visit {
             const unsigned k = t->position_below(local);
             slack.add(view_.test, t->child_bound[k]);
             if (const PlacedTile* below = t->child(tiles_, k, view_.test)) {
-                slack.add(view_.test, below->split[1]);
+                slack.add(view_.test, opened(below->split[1]));
                 if (view_.test(below->split[1])) {
                     t = below;
                     local = 1;
@@ -104,7 +111,7 @@ class SegmentTree::Visit {
             const double patch_reach = patch_reach_[static_cast<std::size_t>(n.cell.bisection_level())];
             const double distance2 = view_.test.distance2(s);
             n.divided = view_.test(s) && distance2 < patch_reach * patch_reach;
-            slack.add(view_.test, s);
+            slack.add(view_.test, opened(s));
             if (s.deviation > 0) slack.add(distance2, patch_reach);
         }
         n.expires = tree_.expiry(slack.metres());
@@ -141,6 +148,7 @@ double SegmentTree::expiry(double slack_m) const {
 void SegmentTree::update(const TileSource& tiles, const SegmentView& view) {
     if (nodes_.empty()) {
         eye_ = view.test.eye;
+        nodes_.reserve(usual_nodes);
         for (int face = 0; face < face_count; ++face)
             nodes_.push_back(SegmentNode{.cell = LocationCode::face_root(face)});
     }

@@ -13,6 +13,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// Room for the meshes of views at half a pixel, made at once: memory that is not used costs nothing, but moving 10 MB to
+/// a larger place takes 10 ms of one frame, most of it for new pages.
+constexpr std::size_t usual_vertices = 1 << 20, usual_blocks = 1 << 16;
+
 /// Finds a cell that is split in a mesh.
 PlacedCell find_split_cell(const TileSource& tiles, LocationCode cell) {
     const int below = cell.bisection_level() - tiles.layers().root_level(cell.bisection_level());
@@ -234,6 +238,7 @@ void Segments::place(std::span<Job> jobs, std::size_t threads) {
     for (const Job& job : jobs) place(job);
     join(changed_vertices_);
     join(changed_indices_);
+    if (vertices_.size() == 0) reserve();
     vertices_.resize(vertex_places_.size());
     if (view_.morph) morphs_.resize(vertex_places_.size());
     indices_.resize(index_places_.size());
@@ -242,6 +247,14 @@ void Segments::place(std::span<Job> jobs, std::size_t threads) {
     parallel_for((jobs.size() + run - 1) / run, static_cast<unsigned>(threads), [&](std::size_t r) {
         for (const Job& job : jobs.subspan(r * run, std::min(run, jobs.size() - r * run))) copy_arrays(job);
     });
+}
+
+void Segments::reserve() {
+    blocks_.reserve(usual_blocks);
+    vertices_.reserve_more(usual_vertices);
+    if (view_.morph) morphs_.reserve_more(usual_vertices);
+    indices_.reserve_more(2 * usual_vertices);
+    leaf_levels_.reserve_more(2 * usual_vertices);
 }
 
 void Segments::copy_arrays(const Job& job) {

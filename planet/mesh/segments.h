@@ -128,6 +128,7 @@ class Segments {
     void build(const TileSource& tiles, Job& job, Worker& worker) const;
     void place(std::span<Job> jobs, std::size_t threads);
     void place(const Job& job);
+    void reserve();
     void copy_arrays(const Job& job);
     double ratio_since(double odometer, double ratio_max, double least_reach) const;
     Piece new_piece(const BuiltSegment& b, const Piece* old);

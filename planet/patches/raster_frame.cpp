@@ -1,6 +1,7 @@
 #include "planet/patches/raster_frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "planet/error.h"
@@ -9,6 +10,9 @@
 namespace planet {
 
 namespace {
+
+// Samples placed at once, whose angles stay in the processor's cache.
+constexpr std::size_t batch = 256;
 
 // PROJ takes what is less far from WGS84 there, as do rasters (their longitude and latitude are those of WGS84).
 bool on_another_planet(const Raster& raster) {
@@ -61,6 +65,7 @@ void RasterFrame::set_local_frame() {
         reference_.crs = "EPSG:" + std::to_string(epsg_from_utm_zone(zone_, north_));
         return;
     }
+    set_graticule();
     reference_.crs = "EPSG:4978";
     reference_.vertical_datum = name_of(VerticalDatum::ellipsoid);
     if (reference_.frame == MeshFrame::enu) {
@@ -81,12 +86,101 @@ void RasterFrame::geodetic(std::span<const glm::dvec2> at, std::span<glm::dvec2>
     if (!raster_->geographic()) raster_->transform->geodetic_from_crs(longitude_latitude);
 }
 
+void RasterFrame::place_in_utm(std::span<const glm::dvec2> at, std::span<const double> height,
+                               std::span<glm::dvec3> position, std::span<glm::vec3> up) const {
+    std::vector<glm::dvec2> places(at.size());
+    geodetic(at, places);
+    for (std::size_t i = 0; i < at.size(); ++i)
+        position[i] =
+            in_utm(std::clamp(places[i].y, -90.0, 90.0) * degrees, places[i].x * degrees, exaggeration_ * height[i]);
+    std::fill(up.begin(), up.end(), glm::vec3(0, 0, 1));
+}
+
 glm::dvec3 RasterFrame::in_utm(double latitude, double longitude, double height) const try {
     const Utm utm = utm_from_geodetic({latitude, longitude, {}}, zone_);
     const double other = utm.north == north_ ? 0 : north_ ? -1e7 : 1e7;  // northings run on across the equator
     return {utm.easting, utm.northing + other, height};
 } catch (const Error&) {
     return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+}
+
+RasterFrame::Longitude RasterFrame::longitude_of(double degrees_east) {
+    const double radians = degrees_east * degrees;
+    return {radians, std::cos(radians), std::sin(radians)};
+}
+
+RasterFrame::Latitude RasterFrame::latitude_of(double degrees_north) {
+    const double radians = std::clamp(degrees_north, -90.0, 90.0) * degrees;
+    const double c = std::cos(radians), s = std::sin(radians), a2 = wgs84.a * wgs84.a, b2 = wgs84.b * wgs84.b;
+    const double w = std::sqrt(a2 * (c * c) + b2 * (s * s));  // as in ecef_from_normal()
+    return {radians, c, s, a2 / w, b2 / w};
+}
+
+void RasterFrame::set_graticule() {
+    const SampleGrid& grid = raster_->grid;
+    if (!raster_->geographic() || grid.per_column.y != 0 || grid.per_row.x != 0) return;
+    auto graticule = std::make_shared<Graticule>();
+    for (int x = 0; x < raster_->width; ++x) graticule->column.push_back(longitude_of(grid.crs_from_sample({x, 0}).x));
+    for (int y = 0; y < raster_->height; ++y) graticule->row.push_back(latitude_of(grid.crs_from_sample({0, y}).y));
+    graticule_ = std::move(graticule);
+}
+
+bool RasterFrame::all_in_graticule(std::span<const glm::dvec2> at) const {
+    if (!graticule_) return false;
+    const glm::dvec2 low = -first_, high = glm::dvec2(raster_->width - 1, raster_->height - 1) - first_;
+    bool all = true;
+    for (const glm::dvec2 p : at)
+        all &= p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y && p == glm::trunc(p);
+    return all;
+}
+
+// Longitude and latitude of the i-th place. At most a batch of them.
+template <class LongitudeOf, class LatitudeOf>
+void RasterFrame::place_at(const LongitudeOf& longitude, const LatitudeOf& latitude, std::span<const double> height,
+                           std::span<glm::dvec3> position, std::span<glm::vec3> up) const {
+    const std::size_t n = height.size();
+    std::array<GeoidUndulation, batch> undulation{};
+    if (datum_ == VerticalDatum::egm96 && geoid_) {
+        std::array<double, batch> north, east;
+        for (std::size_t i = 0; i < n; ++i) {
+            north[i] = latitude(i).radians;
+            east[i] = longitude(i).radians;
+        }
+        geoid_->undulations({north.data(), n}, {east.data(), n}, std::span(undulation).first(n));
+    }
+    const bool enu = reference_.frame == MeshFrame::enu;
+    const glm::dmat3 enu_from_ecef = glm::transpose(local_.ecef_from_enu_rotation());
+    for (std::size_t i = 0; i < n; ++i) {
+        const Longitude& east = longitude(i);
+        const Latitude& north = latitude(i);
+        const glm::dvec3 normal(north.cosine * east.cosine, north.cosine * east.sine, north.sine);
+        const double h = exaggeration_ * height[i] + undulation[i].m;
+        const glm::dvec3 p(glm::dvec2(normal) * (north.to_axis + h), normal.z * (north.to_equator + h));
+        position[i] = enu ? enu_from_ecef * (p - local_.origin()) : p;
+        if (!up.empty()) up[i] = glm::vec3(enu ? enu_from_ecef * normal : normal);
+    }
+}
+
+void RasterFrame::place_on_ellipsoid(std::span<const glm::dvec2> at, std::span<const double> height,
+                                     std::span<glm::dvec3> position, std::span<glm::vec3> up) const {
+    if (all_in_graticule(at)) {
+        const Longitude* column = graticule_->column.data() + static_cast<std::ptrdiff_t>(first_.x);
+        const Latitude* row = graticule_->row.data() + static_cast<std::ptrdiff_t>(first_.y);
+        place_at([&](std::size_t i) -> const Longitude& { return column[static_cast<std::ptrdiff_t>(at[i].x)]; },
+                 [&](std::size_t i) -> const Latitude& { return row[static_cast<std::ptrdiff_t>(at[i].y)]; }, height,
+                 position, up);
+        return;
+    }
+    std::array<glm::dvec2, batch> places;
+    std::array<Longitude, batch> longitude;
+    std::array<Latitude, batch> latitude;
+    geodetic(at, std::span(places).first(at.size()));
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        longitude[i] = longitude_of(places[i].x);
+        latitude[i] = latitude_of(places[i].y);
+    }
+    place_at([&](std::size_t i) -> const Longitude& { return longitude[i]; },
+             [&](std::size_t i) -> const Latitude& { return latitude[i]; }, height, position, up);
 }
 
 void RasterFrame::place(std::span<const glm::dvec2> at, std::span<const double> height, std::span<glm::dvec3> position,
@@ -97,22 +191,11 @@ void RasterFrame::place(std::span<const glm::dvec2> at, std::span<const double> 
         std::fill(up.begin(), up.end(), glm::vec3(0, 0, 1));
         return;
     }
-    std::vector<glm::dvec2> places(at.size());
-    geodetic(at, places);
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        const double latitude = std::clamp(places[i].y, -90.0, 90.0) * degrees;
-        const double longitude = places[i].x * degrees;
-        if (reference_.frame == MeshFrame::utm) {
-            position[i] = in_utm(latitude, longitude, exaggeration_ * height[i]);
-            if (!up.empty()) up[i] = {0, 0, 1};
-            continue;
-        }
-        const glm::dvec3 n = normal_from_geodetic(latitude, longitude);
-        const double N = datum_ == VerticalDatum::egm96 && geoid_ ? geoid_->undulation(latitude, longitude).m : 0;
-        const glm::dvec3 p = ecef_from_normal(wgs84, n, {exaggeration_ * height[i] + N});
-        const bool enu = reference_.frame == MeshFrame::enu;
-        position[i] = enu ? local_.enu_from_ecef(p) : p;
-        if (!up.empty()) up[i] = glm::vec3(enu ? glm::transpose(local_.ecef_from_enu_rotation()) * n : n);
+    if (reference_.frame == MeshFrame::utm) return place_in_utm(at, height, position, up);
+    for (std::size_t i = 0; i < at.size(); i += batch) {
+        const std::size_t n = std::min(batch, at.size() - i);
+        place_on_ellipsoid(at.subspan(i, n), height.subspan(i, n), position.subspan(i, n),
+                           up.empty() ? up : up.subspan(i, n));
     }
 }
 

@@ -51,9 +51,33 @@ class RasterFrame {
                std::span<glm::vec3> up) const;
 
   private:
+    struct Longitude {
+        double radians, cosine, sine;
+    };
+    /// With the distances from the foot of a normal along it to the axis and to the plane of the equator, metres.
+    struct Latitude {
+        double radians, cosine, sine, to_axis, to_equator;
+    };
+    /// Where columns are meridians and rows parallels: so that samples need no trigonometry.
+    struct Graticule {
+        std::vector<Longitude> column;
+        std::vector<Latitude> row;
+    };
+
     void set_local_frame();
+    void set_graticule();
+    static Longitude longitude_of(double degrees_east);
+    static Latitude latitude_of(double degrees_north);
     glm::dvec3 in_utm(double latitude, double longitude, double height) const;
+    void place_in_utm(std::span<const glm::dvec2> at, std::span<const double> height, std::span<glm::dvec3> position,
+                      std::span<glm::vec3> up) const;
     void geodetic(std::span<const glm::dvec2> at, std::span<glm::dvec2> longitude_latitude) const;
+    bool all_in_graticule(std::span<const glm::dvec2> at) const;
+    template <class LongitudeOf, class LatitudeOf>
+    void place_at(const LongitudeOf& longitude, const LatitudeOf& latitude, std::span<const double> height,
+                  std::span<glm::dvec3> position, std::span<glm::vec3> up) const;
+    void place_on_ellipsoid(std::span<const glm::dvec2> at, std::span<const double> height,
+                            std::span<glm::dvec3> position, std::span<glm::vec3> up) const;
 
     std::shared_ptr<const Raster> raster_;
     VerticalDatum datum_;
@@ -63,6 +87,7 @@ class RasterFrame {
     glm::dvec2 first_{0};  ///< of the window
     bool affine_;
     LocalFrame local_{wgs84, Geodetic{}};
+    std::shared_ptr<const Graticule> graticule_;  ///< may be null
     int zone_ = 0;
     bool north_ = true;
 };

@@ -8,12 +8,8 @@ std::span<const SideCell> side_cells(int depth) {
     static const std::vector<SideCell> all = [] {
         const TileLayout& t = tile_layout();
         std::vector<SideCell> sides;
-        for (unsigned i = 1; i < tile_cells; ++i) {
-            if (t.split_neighbor[i] != 0) continue;
-            const auto [u, v] = t.lattice[t.split_vertex[i]];
-            const Side side = u + v == 64 ? Side::split : v == 0 ? Side::left_leg : Side::right_leg;
-            sides.push_back({static_cast<std::uint16_t>(i), side});
-        }
+        for (unsigned i = 1; i < tile_cells; ++i)
+            if (t.split_neighbor[i] == 0) sides.push_back({static_cast<std::uint16_t>(i), side_of(i)});
         return sides;
     }();
     const auto end = std::partition_point(all.begin(), all.end(), [&](SideCell s) { return s.cell < 1u << depth; });

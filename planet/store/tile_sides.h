@@ -17,6 +17,13 @@ struct SideCell {
     Side side;           ///< of the tile's root
 };
 
+/// The side of the root on which the split side of a side cell lies.
+inline Side side_of(unsigned side_cell) {
+    const TileLayout& layout = tile_layout();
+    const auto [u, v] = layout.lattice[layout.split_vertex[side_cell]];
+    return u + v == 64 ? Side::split : v == 0 ? Side::left_leg : Side::right_leg;
+}
+
 /// The side cells of a tile of this depth, ascending: 189 in a full tile.
 std::span<const SideCell> side_cells(int depth);
 

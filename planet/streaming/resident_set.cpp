@@ -17,6 +17,18 @@ std::size_t measured_bytes(const ResidentTile& tile) {
     return tile.tile->bytes() + (tile.support.size() + tile.below.size()) * sizeof(ResidentTile*);
 }
 
+/// A record that passes every test that splits a cell of the tile at this depth or deeper. All split vertices lie in the
+/// ball of the root; metres are added for the roundings of its record and theirs.
+SplitRecord deeper_than(const PlacedTile& tile, int depth) {
+    constexpr float rounding_m = 4;
+    if (depth >= tile.depth || !tile.is_stored(1)) return {};
+    SplitRecord record = tile.split[1];
+    const auto [deviation, radius] = tile.most[static_cast<std::size_t>(depth)];
+    record.deviation = deviation;
+    record.radius += radius + rounding_m;
+    return record;
+}
+
 }  // namespace
 
 const PlacedTile* ResidentSet::tile(LocationCode root) const {
@@ -46,25 +58,28 @@ ResidentTile& ResidentSet::slot(LocationCode root) {
     return at->second;
 }
 
-void ResidentSet::free_if_unused(ResidentTile& tile) {
-    if (tile.tile || tile.supported > 0) return;
-    bytes_ -= sizeof(ResidentTile);
-    tiles_.erase(tile.root.bits());
+// Not before what is unsettled, which may name them, is settled.
+void ResidentSet::free_unused() {
+    for (const LocationCode root : unused_) {
+        const auto found = tiles_.find(root.bits());
+        if (found == tiles_.end() || found->second.tile || found->second.supported > 0) continue;
+        bytes_ -= sizeof(ResidentTile);
+        tiles_.erase(found);
+    }
+    unused_.clear();
 }
 
 ResidentTile& ResidentSet::insert(std::unique_ptr<PlacedTile> tile, std::span<const LocationCode> support) {
     ResidentTile& resident = slot(tile->root);
-    assert(!resident.tile);
-    tile->close();
-    tile->set_no_children();
+    assert(!resident.tile && resident.open_depth == 0);
     resident.below.assign(tile->child_bound.size(), nullptr);
     resident.tile = std::move(tile);
+    resident.unopened = deeper_than(*resident.tile, 0);
     resident.fresh = true;
     marked_.push_back(resident.root);
     tie(resident, support);
     ++size_;
     bytes_ += resident.bytes = measured_bytes(resident);
-    unsettle(resident, 0);
     changes_.push_back(resident.root);
     return resident;
 }
@@ -103,8 +118,7 @@ void ResidentSet::untie(ResidentTile& tile) {
         --tile.above->children;
     }
     for (ResidentTile* const support : std::exchange(tile.support, {})) {
-        --support->supported;
-        free_if_unused(*support);
+        if (--support->supported == 0) unused_.push_back(support->root);
     }
     tile.above = nullptr;
     tile.beside = {};
@@ -113,60 +127,80 @@ void ResidentSet::untie(ResidentTile& tile) {
 void ResidentSet::erase(LocationCode root) {
     ResidentTile& tile = *find(root);
     assert(tile.children == 0);
-    for (const SideCell& s : side_cells(tile.tile->depth)) {
+    for (const SideCell& s : side_cells(tile.open_depth)) {
         ResidentTile* const beside = tile.beside[static_cast<std::size_t>(s.side)];
         if (beside && tile.tile->is_open(s.cell)) set_open(*beside, local_across(s.cell), false);
     }
-    for (int level = 0; level < tile_levels; ++level)
-        if (std::exchange(tile.unsettled[static_cast<std::size_t>(level)], false))
-            std::erase(unsettled_[static_cast<std::size_t>(root.bisection_level() + level)], &tile);
+    tile.open_depth = 0;
     --size_;
     bytes_ -= std::exchange(tile.bytes, 0);
     untie(tile);
     tile.tile.reset();
     tile.changed.reset();
     tile.below = {};
-    free_if_unused(tile);
+    unused_.push_back(root);
     changes_.push_back(root);
 }
 
-void ResidentSet::unsettle(ResidentTile& tile, int level) {
-    bool& unsettled = tile.unsettled[static_cast<std::size_t>(level)];
-    if (std::exchange(unsettled, true)) return;
-    unsettled_[static_cast<std::size_t>(tile.root.bisection_level() + level)].push_back(&tile);
+void ResidentSet::open(ResidentTile& tile, int depth) {
+    const int from = std::exchange(tile.open_depth, std::min(std::max(tile.open_depth, depth), tile.tile->depth));
+    if (from == tile.open_depth) return;
+    tile.unopened = deeper_than(*tile.tile, tile.open_depth);
+    // What lies below these follows where they open.
+    for (unsigned i = 1u << from; i < 2u << from; ++i)
+        if (from == 0 || tile.tile->is_open(i >> 1)) unsettle(tile, i);
+}
+
+// The cells of a tile that is opened further are made anew: not at every step of the eye.
+void ResidentSet::open_for(ResidentTile& tile, const SplitTest& test) {
+    constexpr int levels_ahead = 2;
+    if (!test(tile.unopened)) return;
+    int depth = tile.open_depth + 1;
+    while (depth < tile.tile->depth && test(deeper_than(*tile.tile, depth))) ++depth;
+    open(tile, depth + levels_ahead);
+}
+
+void ResidentSet::unsettle(ResidentTile& tile, unsigned local) {
+    unsettled_[static_cast<std::size_t>(tile.root.bisection_level() + relative_level(local))].push_back({&tile, local});
+}
+
+void ResidentSet::unsettle_children(ResidentTile& tile, unsigned local) {
+    const unsigned first = 2 * local;
+    if (!(first >> tile.open_depth)) {
+        unsettle(tile, first);
+        unsettle(tile, first + 1);
+    } else if (first >> tile.tile->depth && tile.children > 0) {
+        const unsigned position = tile.tile->position_below(first);
+        for (const unsigned k : {position, position + 1})
+            if (tile.tile->child_bound.has(k))
+                if (ResidentTile* const below = tile.below[tile.tile->child_bound.index(k)]; below && below->open_depth)
+                    unsettle(*below, 1);
+    }
 }
 
 void ResidentSet::settle() {
-    for (std::size_t level = 0; level < unsettled_.size(); ++level) {
-        for (ResidentTile* const tile : std::exchange(unsettled_[level], {})) {
-            const int relative = static_cast<int>(level) - tile->root.bisection_level();
-            tile->unsettled[static_cast<std::size_t>(relative)] = false;
-            settle_level(*tile, relative);
-        }
+    for (std::vector<Unsettled>& level : unsettled_) {
+        for (const auto [tile, local] : level)
+            if (!(local >> tile->open_depth)) settle(*tile, local);
+        level.clear();
     }
+    free_unused();
 }
 
-void ResidentSet::settle_level(ResidentTile& tile, int level) {
-    const TileLayout& layout = tile_layout();
+void ResidentSet::settle(ResidentTile& tile, unsigned local) {
     const PlacedTile& placed = *tile.tile;
-    if (level >= placed.depth) return;
-    const unsigned first = 1u << level;
-    for (unsigned i = first; i < 2 * first; ++i) {
-        const unsigned beyond = layout.split_neighbor[i];
-        if (i >= beyond || !placed.is_stored(i)) continue;
-        const bool open = placed.is_open(i >> 1) && placed.is_open(beyond >> 1);
-        if (open == placed.is_open(i)) continue;
-        set_open(tile, i, open);
-        change(tile, beyond);
-        if (level == placed.depth - 1) unsettle_below(tile, beyond);
-    }
-    for (const SideCell& s : side_cells(level + 1))
-        if (s.cell >= first) settle_side(tile, s.cell, tile.beside[static_cast<std::size_t>(s.side)]);
+    const unsigned beyond = tile_layout().split_neighbor[local];
+    if (beyond == 0) return settle_side(tile, local, tile.beside[static_cast<std::size_t>(side_of(local))]);
+    const bool open = placed.is_stored(local) && placed.is_open(local >> 1) && placed.is_open(beyond >> 1);
+    if (open == placed.is_open(local)) return;
+    set_open(tile, local, open);
+    change(tile, beyond);
+    unsettle_children(tile, beyond);
 }
 
 // Whether the tile has the cell's record and the diamond of the cell's parent exists.
 bool ResidentSet::may_open(const ResidentTile& tile, unsigned local) const {
-    if (local >> tile.tile->depth || !tile.tile->is_stored(local)) return false;
+    if (local >> tile.open_depth || !tile.tile->is_stored(local)) return false;
     if (local > 1) return tile.tile->is_open(local >> 1);
     return !tile.above || tile.above->tile->is_open(layers_.local_above(tile.root) >> 1);
 }
@@ -182,11 +216,7 @@ void ResidentSet::settle_side(ResidentTile& tile, unsigned local, ResidentTile* 
 void ResidentSet::set_open(ResidentTile& tile, unsigned local, bool open) {
     tile.tile->set_open(local, open);
     change(tile, local);
-    const int below = relative_level(local) + 1;
-    if (below < tile.tile->depth)
-        unsettle(tile, below);
-    else
-        unsettle_below(tile, local);
+    unsettle_children(tile, local);
 }
 
 // Levels change from the coarsest down, and below a cell that has changed usually all do: they need no mention.
@@ -200,14 +230,6 @@ void ResidentSet::change(ResidentTile& tile, unsigned local) {
         if (tile.changed->test(i)) return;
     tile.changed->set(local);
     changes_.push_back(cell_code(tile.root, local));
-}
-
-void ResidentSet::unsettle_below(ResidentTile& tile, unsigned local) {
-    if (tile.children == 0) return;
-    const unsigned first = tile.tile->position_below(2 * local);
-    for (const unsigned k : {first, first + 1})
-        if (tile.tile->child_bound.has(k))
-            if (ResidentTile* const below = tile.below[tile.tile->child_bound.index(k)]) unsettle(*below, 0);
 }
 
 std::vector<LocationCode> ResidentSet::take_changes() {
@@ -239,6 +261,7 @@ void ResidentSet::place(const Placement& placement, unsigned threads) {
     bytes_ = 0;
     for (ResidentTile* const t : tiles) {
         bytes_ += t->bytes = measured_bytes(*t);
+        t->unopened = deeper_than(*t->tile, t->open_depth);
         if (t->above)
             t->above->tile->set_child(layers_.position(t->root), t->tile.get());
         else

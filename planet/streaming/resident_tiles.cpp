@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <utility>
 
 #include "planet/streaming/view_needs.h"
 
@@ -27,6 +28,10 @@ bool may_show(const PlacedTile& face, const SegmentView& view) {
     for (std::size_t v = 0; v < 3; ++v)
         radius = std::max(radius, glm::distance(centre, ecef_from_grid(face.position[v])));
     return !view.culling.hidden(centre, radius + relief);
+}
+
+std::uint64_t last_use(const ResidentTile& tile) {
+    return std::max(tile.needed, tile.wanted);
 }
 
 }  // namespace
@@ -66,6 +71,8 @@ LoadedTile ResidentTiles::load(LocationCode root) const {
     LoadedTile loaded{root, nullptr, tile && tile->damaged, {}};
     if (tile && (!tile->damaged || root.bisection_level() == 0)) {
         loaded.tile = std::make_unique<PlacedTile>(*tile, placement_);
+        loaded.tile->close();
+        loaded.tile->set_no_children();
         loaded.support = tile_support(root, tile->depth);
     }
     return loaded;
@@ -113,6 +120,7 @@ void ResidentTiles::ask(const SegmentView& view, const SegmentView* ahead) {
     residency_ = {};
     ViewNeeds needs(set_, &ResidentTile::needed, needed_mark_ = ++mark_);
     needs.add(view);
+    for (ResidentTile* const t : needs.there()) set_.open_for(*t, view.test);
     std::vector<TileRequest> requests;
     for (const MissingTile& m : needs.missing()) {
         const bool damaged = damaged_.contains(m.root.bits());
@@ -157,24 +165,25 @@ bool ResidentTiles::is_held(const ResidentTile& tile) const {
     return tile.needed == needed_mark_ || (ahead_ && tile.wanted == wanted_mark_);
 }
 
-// Drops tiles that neither view needs, those first that were needed or wanted last the longest ago.
+// Drops tiles that neither view needs, those first that were needed or wanted last the longest ago. Tiles that are not
+// listed have been so later: the list holds until it is used up.
 void ResidentTiles::keep_within_limit() {
     const std::size_t limit = cache_.memory_limit_bytes();
-    if (set_.bytes() <= limit) return;
-    const auto last = [](const ResidentTile* t) { return std::max(t->needed, t->wanted); };
-    std::vector<ResidentTile*> free;
-    for (ResidentTile* t : set_.all())
-        if (t->root.bisection_level() > 0 && !is_held(*t)) free.push_back(t);
-    // A tile is needed whenever one below it is: of equals, the deeper goes first.
-    const auto later = [&](const ResidentTile* a, const ResidentTile* b) {
-        return last(a) != last(b) ? last(a) > last(b) : a->root < b->root;
-    };
-    std::make_heap(free.begin(), free.end(), later);  // few of many go
-    while (set_.bytes() > limit && !free.empty()) {
-        std::pop_heap(free.begin(), free.end(), later);
-        if (free.back()->children == 0) set_.erase(free.back()->root);
-        free.pop_back();
+    for (bool listed = false; set_.bytes() > limit; idle_.pop_back()) {
+        if (idle_.empty() && !std::exchange(listed, true)) list_idle();
+        if (idle_.empty()) return;
+        const IdleTile& idle = idle_.back();
+        if (last_use(*idle.tile) == idle.last && idle.tile->children == 0) set_.erase(idle.root);
     }
+}
+
+void ResidentTiles::list_idle() {
+    for (ResidentTile* t : set_.all())
+        if (t->root.bisection_level() > 0 && !is_held(*t)) idle_.push_back({last_use(*t), t->root, t});
+    // A tile is needed whenever one below it is: of equals, the deeper goes first.
+    std::sort(idle_.begin(), idle_.end(), [](const IdleTile& a, const IdleTile& b) {
+        return a.last != b.last ? a.last > b.last : a.root < b.root;
+    });
 }
 
 void ResidentTiles::count_memory() {

@@ -80,6 +80,12 @@ class ResidentTiles final : public TileSource {
     ResidentCounts counts() const;
 
   private:
+    /// A tile that neither view needed when it was listed.
+    struct IdleTile {
+        std::uint64_t last;  ///< needed or wanted
+        LocationCode root;
+        ResidentTile* tile;
+    };
     static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
     LoadedTile load(LocationCode root) const;
@@ -90,6 +96,7 @@ class ResidentTiles final : public TileSource {
     void ask_ahead(const SegmentView& ahead, std::size_t bytes, std::vector<TileRequest>& requests);
     bool is_held(const ResidentTile& tile) const;
     void keep_within_limit();
+    void list_idle();
     void count_memory();
 
     const TileCache& cache_;
@@ -97,6 +104,7 @@ class ResidentTiles final : public TileSource {
     Placement placement_;
     ResidentSet set_;
     std::unordered_set<std::uint64_t> damaged_, absent_;
+    std::vector<IdleTile> idle_;  // the first to be dropped last
     std::uint64_t mark_ = 0;
     std::uint64_t needed_mark_ = 0, wanted_mark_ = 0;
     std::size_t loaded_ = 0, counted_bytes_ = 0;

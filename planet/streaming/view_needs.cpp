@@ -11,12 +11,6 @@ namespace planet {
 
 namespace {
 
-// As if no diamond were closed.
-SplitRecord opened(SplitRecord record) {
-    record.deviation = std::abs(record.deviation);
-    return record;
-}
-
 glm::dvec3 centre_of(const SplitRecord& record) {
     return {record.x, record.y, record.z};
 }

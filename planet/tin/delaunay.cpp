@@ -1,6 +1,8 @@
 #include "planet/tin/delaunay.h"
 
+#include <algorithm>
 #include <cassert>
+#include <numeric>
 
 namespace planet {
 
@@ -25,6 +27,36 @@ Delaunay::Delaunay(std::span<const int> columns, std::span<const int> rows) {
 }
 
 Delaunay::Delaunay(glm::ivec2 low, glm::ivec2 high) : Delaunay(std::array{low.x, high.x}, std::array{low.y, high.y}) {}
+
+Delaunay::Delaunay(std::vector<glm::ivec2> points, std::span<const std::array<Index, 3>> triangles)
+    : point_(std::move(points)) {
+    out_.resize(point_.size(), none);
+    origin_.resize(3 * triangles.size());
+    twin_.resize(origin_.size(), none);
+    for (Index t = 0; t < triangles.size(); ++t) set_triangle(t, triangles[t][0], triangles[t][1], triangles[t][2]);
+    link_twins();
+    for (Index e = 0; e < origin_.size(); ++e) {
+        const Index f = twin_[e];
+        if (f == none || f < e) continue;
+        const auto c = corners(e / 3);
+        if (in_circle(c[0], c[1], c[2], point_[origin_[previous(f)]])) hold(e);
+    }
+}
+
+// Half-edges are met by their lower ends, those of one end side by side.
+void Delaunay::link_twins() {
+    const auto low_end = [this](Index e) { return std::min(origin_[e], origin_[next(e)]); };
+    std::vector<Index> end(point_.size() + 1, 0), by_low_end(origin_.size());
+    for (Index e = 0; e < origin_.size(); ++e) ++end[low_end(e) + 1];
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    for (Index e = 0; e < origin_.size(); ++e) by_low_end[end[low_end(e)]++] = e;
+    for (Index v = 0, first = 0; v < point_.size(); first = end[v++])
+        for (Index i = first; i < end[v]; ++i)
+            for (Index j = first; j < i && twin_[by_low_end[i]] == none; ++j) {
+                const Index e = by_low_end[i], f = by_low_end[j];
+                if (origin_[e] == origin_[next(f)] && origin_[next(e)] == origin_[f]) link(e, f);
+            }
+}
 
 void Delaunay::reserve(std::size_t triangles) {
     origin_.reserve(3 * triangles);

@@ -60,6 +60,9 @@ class Delaunay {
     Delaunay(std::span<const int> columns, std::span<const int> rows);
     /// Two triangles.
     Delaunay(glm::ivec2 low, glm::ivec2 high);
+    /// Triangles of any shape as a whole, holes too, in their order: points can go in at locate_in(). Sides that are not
+    /// Delaunay become constrained. @param triangles counter-clockwise, no side twice the same way; all points used
+    Delaunay(std::vector<glm::ivec2> points, std::span<const std::array<Index, 3>> triangles);
 
     /// Slots: some may be unused after removals.
     std::size_t vertex_slots() const { return point_.size(); }
@@ -137,6 +140,8 @@ class Delaunay {
     /// @return false, and nothing changes, if it crosses a constrained side: crossed() has both its ends
     bool constrain(Index a, Index b);
     std::array<Index, 2> crossed() const { return crossed_; }
+    /// Makes a side that is there one that stays.
+    void hold(Index e);
     /// Makes a constrained side one like any other.
     void release(Index e);
     bool constrained(Index e) const { return !constrained_.empty() && constrained_[e] != 0; }
@@ -168,6 +173,7 @@ class Delaunay {
         if (f != none) twin_[f] = e;
     }
     void set_constrained(Index e);
+    void link_twins();
     bool collect_star(Index v);
     bool begin_removal(Index v);
     bool cut_ear();

@@ -161,6 +161,11 @@ bool Delaunay::constrain(Index a, Index b) {
     return true;
 }
 
+void Delaunay::hold(Index e) {
+    if (!has_constraints()) constrained_.assign(origin_.size(), 0);
+    set_constrained(e);
+}
+
 void Delaunay::release(Index e) {
     constrained_[e] = 0;
     if (twin_[e] != none) constrained_[twin_[e]] = 0;

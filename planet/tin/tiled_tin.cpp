@@ -228,6 +228,7 @@ TinMesh joined(std::vector<TinTile> tiles) {
             out.vertices.push_back(t.mesh.vertices[v]);
             out.height.push_back(t.mesh.height[v]);
         }
+        std::ranges::copy(t.mesh.held_sides, std::back_inserter(out.held_sides));
         for (const auto& [a, b, c] : t.mesh.triangles) out.triangles.push_back({number[a], number[b], number[c]});
         t = {};
     }

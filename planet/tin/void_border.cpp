@@ -41,6 +41,23 @@ std::vector<glm::ivec2> void_border(const HeightGrid& grid, glm::ivec2 low, glm:
     return samples;
 }
 
+namespace {
+
+// Each once.
+std::vector<std::array<glm::ivec2, 2>> constrained_sides(const Delaunay& mesh, glm::ivec2 offset) {
+    std::vector<std::array<glm::ivec2, 2>> sides;
+    for (Index t = 0; mesh.has_constraints() && t < mesh.triangle_slots(); ++t) {
+        if (!mesh.alive(t)) continue;
+        for (Index e = 3 * t; e < 3 * t + 3; ++e)
+            if (mesh.constrained(e) && (mesh.twin(e) == Delaunay::none || e < mesh.twin(e)))
+                sides.push_back(
+                    {mesh.point(mesh.origin(e)) + offset, mesh.point(mesh.origin(Delaunay::next(e))) + offset});
+    }
+    return sides;
+}
+
+}  // namespace
+
 TinMesh triangles_over_samples(const Delaunay& mesh, const HeightGrid& grid, glm::ivec2 offset) {
     TinMesh out;
     out.triangles.reserve(mesh.triangle_count());
@@ -71,6 +88,7 @@ TinMesh triangles_over_samples(const Delaunay& mesh, const HeightGrid& grid, glm
     }
     for (auto& t : out.triangles)
         for (Index& v : t) v = number[v];
+    out.held_sides = constrained_sides(mesh, offset);
     return out;
 }
 

@@ -1,26 +1,23 @@
 #include "planet/tin/written_tin.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "planet/parallel.h"
-#include "planet/patches/patch_mesh.h"
-#include "planet/tin/greedy_tin.h"
 #include "planet/tin/triangle_scan.h"
-#include "planet/tin/void_border.h"
 
 namespace planet {
 
 namespace {
 
-constexpr std::size_t piece = 4096;
+// Vertices, or triangles, that are worked on at a time.
+constexpr std::size_t piece_size = 4096;
 
 std::vector<glm::dvec3> placed(const TinMesh& mesh, const HeightGrid& grid, const RasterFrame& frame) {
     std::vector<glm::dvec3> out(mesh.vertices.size());
-    parallel_for((out.size() + piece - 1) / piece, 0, [&](std::size_t k) {
-        const std::size_t begin = k * piece, n = std::min(piece, out.size() - begin);
+    parallel_for((out.size() + piece_size - 1) / piece_size, 0, [&](std::size_t k) {
+        const std::size_t begin = k * piece_size, n = std::min(piece_size, out.size() - begin);
         std::vector<glm::dvec2> at(n);
         std::vector<double> heights(n);
         for (std::size_t i = 0; i < n; ++i) {
@@ -32,14 +29,11 @@ std::vector<glm::dvec3> placed(const TinMesh& mesh, const HeightGrid& grid, cons
     return out;
 }
 
-double smallest_angle(const std::array<glm::dvec3, 3>& p, glm::dvec2 metres_per_unit) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < 3; ++k) {
-        const glm::dvec3 scale(metres_per_unit, 1);
-        const glm::dvec3 u = (p[(k + 1) % 3] - p[k]) * scale, v = (p[(k + 2) % 3] - p[k]) * scale;
-        least = std::min(least, std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)));
-    }
-    return least;
+// Of the smallest angle of a triangle: the largest of all is that of the smallest.
+double cotangent(const std::array<glm::dvec3, 3>& p, const glm::dvec3& metres_per_unit) {
+    const glm::dvec3 a = (p[2] - p[1]) * metres_per_unit, b = (p[0] - p[2]) * metres_per_unit,
+                     c = (p[1] - p[0]) * metres_per_unit;
+    return std::max({-glm::dot(b, c), -glm::dot(c, a), -glm::dot(a, b)}) / glm::length(glm::cross(a, b));
 }
 
 // Which of the triangles that hold a sample counts it. Where triangles are missing: the first to ask.
@@ -88,14 +82,19 @@ class TriangleSamples {
     // The corners last, which are valid in every TIN.
     void collect(const std::array<glm::ivec2, 3>& c) {
         samples_.clear();
+        shared_.clear();
         for_each_span(SortedTriangle(c, {0, 0, 0}), [&](int y, int first, int last) {
+            const bool level = y == c[0].y || y == c[1].y || y == c[2].y;  // with a corner, perhaps a side
             for (int x = first; x <= last; ++x) {
                 const glm::ivec2 p(x, y);
-                if (p != c[0] && p != c[1] && p != c[2] && grid_.valid(p)) samples_.push_back(p);
+                if (!grid_.valid(p) || (level && (p == c[0] || p == c[1] || p == c[2]))) continue;
+                samples_.push_back(p);
+                shared_.push_back(level || x == first || x == last);
             }
             return true;
         });
         samples_.insert(samples_.end(), c.begin(), c.end());
+        shared_.resize(samples_.size(), 1);
     }
 
     void measure(const std::array<glm::dvec3, 3>& p, const std::array<glm::ivec2, 3>& c) {
@@ -110,6 +109,8 @@ class TriangleSamples {
     }
 
     std::span<const glm::ivec2> samples() const { return samples_; }
+    /// Whether another triangle may hold the sample, too: if not, it lies within this one.
+    bool may_be_shared(std::size_t i) const { return shared_[i] != 0; }
     std::span<const double> distances() const { return distances_; }
 
   private:
@@ -179,56 +180,12 @@ class TriangleSamples {
     const SampleGrid affine_grid_;
     const double metre_;  ///< of height, in the frame
     std::vector<glm::ivec2> samples_;
+    std::vector<std::uint8_t> shared_;
     std::vector<double> distances_, heights_;
     std::vector<glm::dvec2> at_;
     std::vector<glm::dvec3> position_;
     std::vector<glm::vec3> up_;
 };
-
-// Along the Z-order curve, so that each point is found near the one before: by the highest bit in which two differ.
-bool before_in_quadrants(glm::ivec2 p, glm::ivec2 q) {
-    const int x = std::bit_width(static_cast<std::uint32_t>(p.x ^ q.x)),
-              y = std::bit_width(static_cast<std::uint32_t>(p.y ^ q.y));
-    return x > y ? p.x < q.x : p.y < q.y;
-}
-
-struct Sum {
-    double max = 0, squares = 0, angle = std::numeric_limits<double>::infinity();
-    std::size_t samples = 0;
-};
-
-template <class Holder>
-Sum measure_piece(const TinMesh& mesh, std::span<const glm::dvec3> written, const HeightGrid& grid,
-                  const RasterFrame& frame, Holder& holder, std::size_t begin, std::size_t end, WrittenDeviation& out) {
-    Sum sum;
-    TriangleSamples inside(grid, frame);
-    const glm::dvec2 metres = frame.metres_per_unit();
-    for (std::size_t i = begin; i < end; ++i) {
-        const auto& t = mesh.triangles[i];
-        const std::array p{written[t[0]], written[t[1]], written[t[2]]};
-        const std::array c{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-        sum.angle = std::min(sum.angle, smallest_angle(p, metres));
-        inside.collect(c);
-        inside.measure(p, c);
-        for (std::size_t k = 0; k < inside.samples().size(); ++k) {
-            const double d = inside.distances()[k];
-            if (d > out.by_triangle[i]) {
-                out.by_triangle[i] = d;
-                out.farthest[i] = inside.samples()[k];
-            }
-            if (!holder.counts(c, inside.samples()[k])) continue;
-            sum.squares += d * d;
-            ++sum.samples;
-            if (!out.by_sample.empty()) {
-                const glm::ivec2 s = inside.samples()[k];
-                out.by_sample[static_cast<std::size_t>(s.y) * static_cast<std::size_t>(grid.width()) +
-                              static_cast<std::size_t>(s.x)] = static_cast<float>(d);
-            }
-        }
-        sum.max = std::max(sum.max, out.by_triangle[i]);
-    }
-    return sum;
-}
 
 }  // namespace
 
@@ -258,48 +215,89 @@ HeightGrid heights_above_tangent_plane(const HeightGrid& grid, const RasterFrame
             }};
 }
 
-WrittenDeviation measure_written(const TinMesh& mesh, std::span<const glm::dvec3> written, const HeightGrid& grid,
-                                 const RasterFrame& frame, unsigned threads, bool by_sample) {
-    WrittenDeviation out;
-    if (by_sample) out.by_sample.assign(grid.count(), std::numeric_limits<float>::quiet_NaN());
-    const std::size_t triangles = mesh.triangles.size(), pieces = (triangles + piece - 1) / piece;
-    out.by_triangle.assign(triangles, 0);
-    out.farthest.assign(triangles, glm::ivec2(-1));
-    std::vector<Sum> sums(pieces);
-    const auto work = [&](auto& holder, std::size_t k) {
-        sums[k] =
-            measure_piece(mesh, written, grid, frame, holder, k * piece, std::min(triangles, (k + 1) * piece), out);
-    };
-    if (grid.has_void()) {
-        FirstHolder holder(grid);
-        for (std::size_t k = 0; k < pieces; ++k) work(holder, k);
-    } else {
-        const HolderBeside holder(grid);
-        parallel_for(pieces, threads, [&](std::size_t k) { work(holder, k); });
+template <class Holder>
+WrittenMeasure::Piece WrittenMeasure::measured(std::size_t piece, const TinMesh& mesh,
+                                               std::span<const glm::dvec3> written, Holder& holder) {
+    Piece out;
+    TriangleSamples inside(grid_, frame_);
+    const glm::dvec3 metres(frame_.metres_per_unit(), 1);
+    const auto width = static_cast<std::size_t>(grid_.width());
+    const std::size_t end = std::min(mesh.triangles.size(), (piece + 1) * piece_size);
+    for (std::size_t i = piece * piece_size; i < end; ++i) {
+        const auto& t = mesh.triangles[i];
+        const std::array p{written[t[0]], written[t[1]], written[t[2]]};
+        const std::array c{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+        out.cotangent = std::max(out.cotangent, cotangent(p, metres));
+        inside.collect(c);
+        inside.measure(p, c);
+        FarTriangle farthest{static_cast<std::uint32_t>(i), {-1, -1}, 0};
+        for (std::size_t k = 0; k < inside.samples().size(); ++k) {
+            const double d = inside.distances()[k];
+            const glm::ivec2 s = inside.samples()[k];
+            if (d > farthest.deviation) farthest = {farthest.triangle, s, d};
+            if (inside.may_be_shared(k) && !holder.counts(c, s)) continue;
+            out.squares += d * d;
+            ++out.samples;
+            if (options_.by_sample)
+                found_.by_sample[static_cast<std::size_t>(s.y) * width + static_cast<std::size_t>(s.x)] =
+                    static_cast<float>(d);
+        }
+        out.max = std::max(out.max, farthest.deviation);
+        if (farthest.deviation > options_.above) out.too_far.push_back(farthest);
     }
-    double squares = 0;
-    out.angle_min = triangles == 0 ? 0 : std::numeric_limits<double>::infinity();
-    for (const Sum& sum : sums) {
-        out.max = std::max(out.max, sum.max);
-        out.angle_min = std::min(out.angle_min, sum.angle);
-        out.samples += sum.samples;
-        squares += sum.squares;
-    }
-    out.uncovered = grid.valid_samples() - out.samples;
-    out.rms = out.samples == 0 ? 0 : std::sqrt(squares / static_cast<double>(out.samples));
     return out;
 }
 
-TinMesh with_samples(const TinMesh& mesh, const HeightGrid& grid, std::span<const glm::ivec2> samples,
-                     const TinFeatures& features) {
-    Delaunay all = coarsest_tin(grid);
-    insert_features(all, grid, features);
-    all.reserve(mesh.triangles.size() + 2 * samples.size());
-    std::vector<glm::ivec2> points = mesh.vertices;
-    points.insert(points.end(), samples.begin(), samples.end());
-    std::sort(points.begin(), points.end(), before_in_quadrants);
-    for (const glm::ivec2 p : points) all.insert(p);
-    return triangles_over_samples(all, grid);
+void WrittenMeasure::measure(const TinMesh& mesh, std::span<const glm::dvec3> written) {
+    if (options_.by_sample) found_.by_sample.assign(grid_.count(), std::numeric_limits<float>::quiet_NaN());
+    pieces_.assign((mesh.triangles.size() + piece_size - 1) / piece_size, {});
+    if (grid_.has_void()) {
+        FirstHolder holder(grid_);
+        for (std::size_t k = 0; k < pieces_.size(); ++k) pieces_[k] = measured(k, mesh, written, holder);
+    } else {
+        const HolderBeside holder(grid_);
+        parallel_for(pieces_.size(), options_.threads,
+                     [&](std::size_t k) { pieces_[k] = measured(k, mesh, written, holder); });
+    }
+    add_up();
+}
+
+void WrittenMeasure::measure_again(const TinMesh& mesh, std::span<const glm::dvec3> written,
+                                   std::span<const std::uint32_t> changed) {
+    if (grid_.has_void()) return measure(mesh, written);  // which triangle counts a sample depends on all before it
+    pieces_.resize((mesh.triangles.size() + piece_size - 1) / piece_size);
+    std::vector<std::size_t> due;
+    for (const std::size_t t : changed)
+        if (due.empty() || due.back() != t / piece_size) due.push_back(t / piece_size);
+    const HolderBeside holder(grid_);
+    parallel_for(due.size(), options_.threads,
+                 [&](std::size_t i) { pieces_[due[i]] = measured(due[i], mesh, written, holder); });
+    add_up();
+}
+
+void WrittenMeasure::add_up() {
+    WrittenDeviation sum;
+    sum.by_sample = std::move(found_.by_sample);
+    double squares = 0;
+    double cotangent = 0;
+    for (const Piece& piece : pieces_) {
+        sum.max = std::max(sum.max, piece.max);
+        cotangent = std::max(cotangent, piece.cotangent);
+        sum.samples += piece.samples;
+        squares += piece.squares;
+        sum.too_far.insert(sum.too_far.end(), piece.too_far.begin(), piece.too_far.end());
+    }
+    sum.angle_min = pieces_.empty() ? 0 : std::atan2(1, cotangent);
+    sum.uncovered = grid_.valid_samples() - sum.samples;
+    sum.rms = sum.samples == 0 ? 0 : std::sqrt(squares / static_cast<double>(sum.samples));
+    found_ = std::move(sum);
+}
+
+WrittenDeviation measure_written(const TinMesh& mesh, std::span<const glm::dvec3> written, const HeightGrid& grid,
+                                 const RasterFrame& frame, const MeasureOptions& options) {
+    WrittenMeasure measure(grid, frame, options);
+    measure.measure(mesh, written);
+    return measure.take();
 }
 
 }  // namespace planet

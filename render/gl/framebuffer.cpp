@@ -154,6 +154,27 @@ std::vector<float> Framebuffer::read_rgba_float() const {
     return read<float>(GL_RGBA, 4);
 }
 
+float Framebuffer::read_depth(int x, int y) const {
+    assert(depth_ && x >= 0 && y >= 0 && x < width_ && y < height_);
+    const int row = height_ - 1 - y;
+    if (resolved_)
+        gl().BlitNamedFramebuffer(draw_.name(), resolved_.name(), x, row, x + 1, row + 1, x, row, x + 1, row + 1,
+                                  GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    gl().BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_ ? resolved_.name() : draw_.name());
+    float depth = 0;
+    gl().ReadPixels(x, row, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+    require_gl("Framebuffer::read_depth");
+    return depth;
+}
+
+glm::dvec2 Framebuffer::depth_sample() const {
+    if (samples_ == 1) return glm::dvec2(0.5);
+    GLfloat place[2] = {0.5f, 0.5f};
+    gl().BindFramebuffer(GL_FRAMEBUFFER, draw_.name());
+    gl().GetMultisamplefv(GL_SAMPLE_POSITION, 0, place);
+    return {static_cast<double>(place[0]), 1 - static_cast<double>(place[1])};
+}
+
 std::vector<float> Framebuffer::read_depth() const {
     assert(depth_);
     return read<float>(GL_DEPTH_COMPONENT, 1);

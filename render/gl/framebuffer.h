@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
@@ -67,6 +68,11 @@ class Framebuffer {
     std::vector<float> read_rgba_float() const;
     /// Reads depth, the top row first: 1 near, 0 far or nothing drawn.
     std::vector<float> read_depth() const;
+    /// Depth of one pixel, at depth_sample() in it. @param x, y from the top left
+    float read_depth(int x, int y) const;
+    /// Where in a pixel, from its top left, lies the sample that resolving takes depth from: OpenGL leaves that to the
+    /// driver, and drivers take the first.
+    glm::dvec2 depth_sample() const;
 
   private:
     void blit_to(GLuint target, GLbitfield what) const;

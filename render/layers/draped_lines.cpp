@@ -121,14 +121,6 @@ bool is_behind_planet(const glm::dvec3& eye, const glm::dvec3& point) {
     return glm::dot(there, there) < 1;
 }
 
-std::optional<glm::dvec3> screen_from_ecef(const Camera& camera, const glm::dvec3& point) {
-    const glm::dvec3 view = camera.view_from_ecef * (point - camera.eye);
-    if (!(-view.z > camera.near_m)) return std::nullopt;
-    const double scale = camera.focal_px / -view.z;
-    return glm::dvec3(0.5 * camera.width + scale * view.x, 0.5 * camera.height - scale * view.y,
-                      camera.near_m / -view.z);
-}
-
 void drape(const GeodesicLines& lines, const Camera& camera, DrapeGround& ground, std::vector<ScreenPiece>& pieces) {
     const planet::CullingTest culling(ground.culling);
     Draper draper(camera, ground, pieces);

@@ -37,7 +37,4 @@ void drape(const GeodesicLines& lines, const Camera& camera, DrapeGround& ground
 /// of what is seen from space.
 bool is_behind_planet(const glm::dvec3& eye, const glm::dvec3& point);
 
-/// Where a point is on the picture; nothing behind the eye.
-std::optional<glm::dvec3> screen_from_ecef(const Camera& camera, const glm::dvec3& point);
-
 }  // namespace render

@@ -50,6 +50,20 @@ Camera make_camera(const glm::dvec3& eye, const glm::dvec3& at, double heading, 
     return c;
 }
 
+std::optional<glm::dvec3> screen_from_ecef(const Camera& camera, const glm::dvec3& point) {
+    const glm::dvec3 view = camera.view_from_ecef * (point - camera.eye);
+    if (!(-view.z > camera.near_m)) return std::nullopt;
+    const double scale = camera.focal_px / -view.z;
+    return glm::dvec3(0.5 * camera.width + scale * view.x, 0.5 * camera.height - scale * view.y,
+                      camera.near_m / -view.z);
+}
+
+glm::dvec3 ecef_from_screen(const Camera& camera, const glm::dvec3& at) {
+    const double ahead = camera.near_m / at.z, across = ahead / camera.focal_px;
+    const glm::dvec3 view(across * (at.x - 0.5 * camera.width), across * (0.5 * camera.height - at.y), -ahead);
+    return camera.eye + glm::transpose(camera.view_from_ecef) * view;
+}
+
 glm::dmat4 Camera::clip_from_view(const PicturePart& part) const {
     // A view vector (X, Y, Z) meets the picture at pixel (width/2 + f X/-Z, height/2 - f Y/-Z) from the top left; the
     // part's pixels x .. x + part.width go to -1 .. 1, and y down becomes y up. Depth: near / -Z, 1 at near, 0 at

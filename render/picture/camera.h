@@ -2,6 +2,7 @@
 // Where a picture is taken from, and the matrices of its parts.
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "planet/geodesy/ellipsoid.h"
 #include "planet/mesh/culling.h"
@@ -42,6 +43,19 @@ struct Camera {
 /// @param pitch rad, -pi/2 straight down (the heading is then up in the picture)
 Camera make_camera(const glm::dvec3& eye, const glm::dvec3& at, double heading, double pitch, double focal_px,
                    int width, int height);
+
+/// Where a point is on the picture: pixels from the top left, and depth as it is drawn (near / distance along the view axis).
+/// Nothing behind the eye.
+std::optional<glm::dvec3> screen_from_ecef(const Camera& camera, const glm::dvec3& point);
+
+/// The point that is there on the picture. @param at pixels from the top left, and depth above 0
+glm::dvec3 ecef_from_screen(const Camera& camera, const glm::dvec3& at);
+
+/// By how much the distance along the view axis may be off that follows from a drawn depth, m, besides what it changes
+/// within 1/64 pixel: vertices and depths are rounded to 24 bits (depth_pick_test).
+inline double depth_resolution(double distance_m) {
+    return 1e-4 + distance_m * 0x1p-20;
+}
 
 /// The direction of a heading and pitch at a geodetic normal, ecef, unit.
 glm::dvec3 look_direction(const glm::dvec3& at, double heading, double pitch);

@@ -26,7 +26,7 @@ constexpr Entry mesh[] = {
     {{key_of('V'), false, false, show_deviations}, "V", "deviations"},
     {{key_of('S'), false, false, show_segments}, "S", "segments"},
     {{key_of('K'), false, false, show_curve}, "K", "Sierpinski curve"},
-    {{key_of('F'), false, false, freeze_culling}, "F", "freeze what is in view, to look from outside"},
+    {{key_of('F'), false, false, freeze_culling}, "F", "freeze culling, look from outside"},
     {{Key::f3, false, false, statistics}, "F3", "statistics"},
 };
 constexpr Entry picture[] = {
@@ -61,7 +61,7 @@ struct Group {
     const char* title;
     std::span<const Entry> entries;
 };
-constexpr Group groups[] = {{"Views", views}, {"Picture", picture}, {"Mesh", mesh}, {"Program", program}};
+constexpr Group groups[] = {{"Picture", picture}, {"Views", views}, {"Mesh", mesh}, {"Program", program}};
 
 bool fits(const Binding& b, const InputEvent& e) {
     return b.key == e.key && b.shift == e.shift && b.control == e.control;

@@ -119,7 +119,7 @@ planet::Geodetic place_from_text(const std::string& text) {
     try {
         return planet::geodetic_from_mgrs(text);
     } catch (const planet::Error&) {
-        throw planet::Error(planet::Fault::bad_usage, "place", "this is none",
+        throw planet::Error(planet::Fault::bad_usage, "place", "\"" + text + "\" is none",
                             "latitude, longitude in degrees, or an MGRS square such as 10TES9489");
     }
 }

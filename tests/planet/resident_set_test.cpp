@@ -60,10 +60,13 @@ TEST(PlacedTile, KnowsWhereTilesAreBelow) {
     }
 }
 
-ResidentTile& insert(ResidentSet& set, LocationCode root) {
+ResidentTile& insert(ResidentSet& set, LocationCode root, int open_depth = tile_levels) {
     std::unique_ptr<PlacedTile> tile = placed(root);
     const int depth = tile->depth;
-    return set.insert(std::move(tile), tile_support(root, depth));
+    tile->close();
+    ResidentTile& resident = set.insert(std::move(tile), tile_support(root, depth));
+    set.open(resident, open_depth);
+    return resident;
 }
 
 // ---- the set of tiles in memory -------------------------------------------------------------------------------------
@@ -71,7 +74,7 @@ ResidentTile& insert(ResidentSet& set, LocationCode root) {
 /// The rule as it is written, without any memory.
 class Existence {
   public:
-    explicit Existence(const ResidentSet& set) : set_(set) {}
+    explicit Existence(ResidentSet& set) : set_(set) {}
     bool of(LocationCode cell) {
         const LocationCode name = diamond(cell);
         const auto known = known_.find(name);
@@ -79,15 +82,15 @@ class Existence {
         bool exists = true;
         for (const LocationCode half : {cell, neighbor(cell)}) {
             const auto [root, local] = cell_in_tile(half, set_.layers());
-            const PlacedTile* tile = set_.tile(root);
-            exists = exists && tile && !(local >> tile->depth) && tile->is_stored(local);
+            const ResidentTile* tile = set_.find(root);
+            exists = exists && tile && !(local >> tile->open_depth) && tile->tile->is_stored(local);
         }
         if (exists && cell.bisection_level() > 0) exists = of(cell.parent()) && of(neighbor(cell).parent());
         return known_[name] = exists;
     }
 
   private:
-    const ResidentSet& set_;
+    ResidentSet& set_;
     std::map<LocationCode, bool> known_;
 };
 
@@ -98,17 +101,22 @@ void expect_rule(ResidentSet& set) {
             ASSERT_EQ(t->tile->is_open(i), existence.of(cell_code(t->root, i))) << to_string(t->root) << " " << i;
 }
 
-/// Adds or takes out tiles at random, keeping parents. @return whether anything was done
+/// Adds, opens or takes out tiles at random, keeping parents. @return whether anything was done
 bool change_at_random(ResidentSet& set, std::mt19937& random) {
     const std::vector<LocationCode> roots = patchy_store().tiles();
     const LocationCode root = roots[random() % roots.size()];
+    const int depth = static_cast<int>(random() % (tile_levels + 1));
     if (ResidentTile* const there = set.find(root)) {
+        if (random() % 4 == 0) {
+            set.open(*there, depth);
+            return true;
+        }
         if (there->children > 0 || root.bisection_level() == 0) return false;
         set.erase(root);
         return true;
     }
     if (root.bisection_level() > 0 && !set.find(root.ancestor(root.bisection_level() - tile_levels))) return false;
-    insert(set, root);
+    insert(set, root, depth);
     return true;
 }
 

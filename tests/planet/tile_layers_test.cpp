@@ -215,7 +215,8 @@ TEST_P(AnyFirstLevel, NoWalkMeetsACrackWhicheverTilesAreThere) {
         if (set.find(root)) return;
         if (root.bisection_level() > 0) add(layers.above(root));
         auto tile = std::make_unique<PlacedTile>(*patches().read(root), Placement{});
-        set.insert(std::move(tile), tile_support(root, patches().read(root)->depth));
+        tile->close();
+        set.open(set.insert(std::move(tile), tile_support(root, patches().read(root)->depth)), tile_levels);
     };
     for (int face = 0; face < face_count; ++face) add(LocationCode::face_root(face));
     for (int step = 0; step < 3; ++step) {

@@ -8,6 +8,7 @@
 #include "planet/mesh/surface_check.h"
 #include "planet/patches/patch_mesh.h"
 #include "planet/tin/make_tin.h"
+#include "planet/tin/tin_mending.h"
 #include "tin_rasters.h"
 
 namespace planet {
@@ -53,14 +54,16 @@ TEST(TinWritten, DeviationsAreThoseOfTheLatticeInTheSource) {
     for (const double tolerance : {0.0, 5.0, 40.0, 1e5}) {
         const TinMesh mesh = make_tin(grid, {.tolerance = tolerance}).mesh;
         const SurfaceMesh surface = surface_from_tin(mesh, grid, frame);
-        const WrittenDeviation d = measure_written(mesh, surface.vertices, grid, frame);
+        const WrittenDeviation d = measure_written(mesh, surface.vertices, grid, frame, {.above = -1});
         EXPECT_NEAR(d.max, brute_deviation(mesh, grid).max, 1e-6);
         EXPECT_EQ(d.samples, grid.count()) << "each counts once";
         EXPECT_EQ(d.uncovered, 0u);
-        EXPECT_EQ(*std::max_element(d.by_triangle.begin(), d.by_triangle.end()), d.max);
+        ASSERT_EQ(d.too_far.size(), mesh.triangles.size());
+        EXPECT_EQ(std::ranges::max(d.too_far, {}, &FarTriangle::deviation).deviation, d.max);
         EXPECT_GT(d.angle_min, 0);
         EXPECT_LT(d.angle_min, 61 * degrees);
-        EXPECT_EQ(measure_written(mesh, surface.vertices, grid, frame, 1).rms, d.rms) << "whatever the threads";
+        EXPECT_EQ(measure_written(mesh, surface.vertices, grid, frame, {.threads = 1}).rms, d.rms)
+            << "whatever the threads";
         double squares = 0;
         for (int y = 0; y < 90; ++y)
             for (int x = 0; x < 120; ++x) {  // by the first triangle that holds it
@@ -128,18 +131,41 @@ TEST(TinWritten, CurvedFramesAreMetByHeightsAboveThePlane) {
     }
 }
 
-TEST(TinWritten, MoreSamplesGoIn) {
-    const auto raster = geographic_raster(80, 80);
-    const HeightGrid grid(*raster);
-    const TinFeatures features{{{40, 41}}, {{{3, 3}, {70, 50}}}};
-    const TinMesh mesh = make_tin(grid, {.tolerance = 30, .features = features}).mesh;
-    const std::vector<glm::ivec2> more{{7, 9}, {33, 60}, {0, 44}};
-    const TinMesh refined = with_samples(mesh, grid, more, features);
-    EXPECT_TRUE(sound(refined));
-    EXPECT_EQ(doubled_area(refined), 2 * 79 * 79);
-    EXPECT_GE(refined.vertices.size(), mesh.vertices.size());
-    for (const glm::ivec2 p : more)
-        EXPECT_NE(std::find(refined.vertices.begin(), refined.vertices.end(), p), refined.vertices.end());
+// Measured again where it has changed: what measuring all of it says, to the bit.
+TEST(TinWritten, IsMeasuredAgainWhereItHasChanged) {
+    const auto raster = geographic_raster(300, 280);
+    const HeightGrid whole(*raster);
+    HeightGrid pierced(whole);
+    for (int y = 100; y < 130; ++y)
+        for (int x = 90; x < 120 + y % 5; ++x) pierced.set({x, y}, std::nanf(""));
+    const RasterFrame frame = frame_of(raster, MeshFrame::enu);
+    for (const HeightGrid* const grid : {&whole, &std::as_const(pierced)}) {
+        TinMesh mesh = make_tin(*grid, {.tolerance = 6}).mesh;
+        ASSERT_GT(mesh.triangles.size(), 3 * 4096u) << "several pieces";
+        WrittenMeasure measure(*grid, frame, {.above = 5, .by_sample = true});
+        measure.measure(mesh, surface_from_tin(mesh, *grid, frame).vertices);
+        const std::vector<FarTriangle> due = measure.found().too_far;
+        ASSERT_GT(due.size(), 10u);
+        TinMending mending(mesh);
+        for (const FarTriangle& far : due)
+            if (far.triangle % 7 == 0) mending.insert(far.sample, far.triangle);
+        mesh = mending.mesh(*grid);
+        const SurfaceMesh surface = surface_from_tin(mesh, *grid, frame);
+        measure.measure_again(mesh, surface.vertices, mending.take_changed());
+        const WrittenDeviation all = measure_written(mesh, surface.vertices, *grid, frame, {.above = 5}),
+                               again = measure.take();
+        EXPECT_EQ(again.max, all.max);
+        EXPECT_EQ(again.rms, all.rms);
+        EXPECT_EQ(again.samples, all.samples);
+        EXPECT_EQ(again.uncovered, all.uncovered);
+        EXPECT_EQ(again.angle_min, all.angle_min);
+        ASSERT_EQ(again.too_far.size(), all.too_far.size());
+        EXPECT_LT(again.too_far.size(), due.size());
+        for (std::size_t i = 0; i < all.too_far.size(); ++i) {
+            EXPECT_EQ(again.too_far[i].triangle, all.too_far[i].triangle);
+            EXPECT_EQ(again.too_far[i].sample, all.too_far[i].sample);
+        }
+    }
 }
 
 TEST(TinWritten, TellsOfEverySample) {
@@ -149,7 +175,7 @@ TEST(TinWritten, TellsOfEverySample) {
     const TinMesh mesh = make_tin(grid, {.tolerance = 10}).mesh;
     const RasterFrame frame = frame_of(raster, MeshFrame::source);
     const WrittenDeviation d =
-        measure_written(mesh, surface_from_tin(mesh, grid, frame).vertices, grid, frame, 0, true);
+        measure_written(mesh, surface_from_tin(mesh, grid, frame).vertices, grid, frame, {.by_sample = true});
     ASSERT_EQ(d.by_sample.size(), grid.count());
     float most = 0;
     std::size_t known = 0;

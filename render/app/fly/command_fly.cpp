@@ -10,6 +10,7 @@
 #include "render/app/program.h"
 #include "render/app/progress.h"
 #include "render/app/report.h"
+#include "render/app/tile_report.h"
 
 namespace render {
 namespace {
@@ -92,11 +93,7 @@ void fill(Report& report, const FilmOptions& options, const FilmReport& film) {
     report.set("frames_of_flight", film.frames_of_flight);
     report.set("frames_drawn", film.drawn_frames);
     report.set("triangles_max", film.triangles_max);
-    report.set("tiles", film.tiles.tiles);
-    report.set("tile_bytes", film.tiles.tile_bytes);
-    report.set("tiles_loaded", film.tiles.tiles_loaded);
-    report.set("memory_limit_bytes", film.tiles.memory_limit_bytes);
-    report.set("memory_peak_bytes", film.tiles.memory_peak_bytes);
+    report_tiles(report, film.tiles);
     report.set("deviation_max_m", film.deviation_max_m);
     report.set("pixel_deviation_max", film.pixel_deviation_max);
     report.set("pixel_deviation_bound", options.render.max_pixel_deviation);

@@ -10,6 +10,7 @@
 #include "render/app/progress.h"
 #include "render/app/report.h"
 #include "render/app/source_report.h"
+#include "render/app/tile_report.h"
 
 namespace render {
 namespace {
@@ -41,11 +42,7 @@ void fill(Report& report, const RenderOptions& options, const PictureReport& pic
     report.set("triangles", picture.triangles);
     report.set("vertices", picture.vertices);
     report.set("strip_indices", picture.strip_indices);
-    report.set("tiles", picture.tiles.tiles);
-    report.set("tile_bytes", picture.tiles.tile_bytes);
-    report.set("tiles_loaded", picture.tiles.tiles_loaded);
-    report.set("memory_limit_bytes", picture.tiles.memory_limit_bytes);
-    report.set("memory_peak_bytes", picture.tiles.memory_peak_bytes);
+    report_tiles(report, picture.tiles);
     report.set("gpu_bytes", picture.sent_bytes);
     report.set("gpu_bytes_at_rest", picture.at_rest.sent_bytes);
     report.set("gpu_bytes_moving", picture.moving.sent_bytes);

@@ -139,7 +139,6 @@ class TinMaker {
         goal.format = format_;
         goal.by_sample = error_grid_ != nullptr;
         if (command_.base) goal.floor = floor_below(*heights_, frame_, *command_.base);
-        goal.features = features_;
         WrittenTin tin = as_written(std::move(made.mesh), *heights_, frame_, goal);
         if (!tin.kept && !tin.mendable) refuse_bound(*command_.max_deviation, tin.deviation_max, format_);
         if (!tin.kept) end_ = planet::GreedyEnd::budget;  // what would mend it is more than there may be

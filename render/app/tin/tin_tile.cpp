@@ -121,7 +121,6 @@ std::optional<MadeTile> TileMaker::make(const TileWindow& w, const planet::TinTi
     goal.by_sample = true;
     goal.border_is_shared = true;
     goal.floor = floor_;
-    goal.features = planet::moved(needs.features, -w.low);
     MadeTile made{as_written(std::move(tile.mesh), w.tile, frame_.window(w.low), goal), tile.features, {}};
 
     for (const glm::ivec2 p : made.tin.border_samples) made.needed.push_back(p + w.low);

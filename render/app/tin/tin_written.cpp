@@ -1,12 +1,11 @@
 #include "render/app/tin/tin_written.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "planet/error.h"
 #include "planet/mesh/surface_check.h"
-#include "planet/patches/patch_mesh.h"
+#include "planet/tin/tin_mending.h"
 #include "planet/tin/tin_solid.h"
 #include "render/app/mesh/raster_frames.h"
 #include "render/app/tin/tin_source.h"
@@ -34,109 +33,71 @@ void close_below(planet::SurfaceMesh& surface, const planet::TinSolid& solid, co
     surface.level.resize(surface.triangles.size(), 0);
 }
 
+/// The largest deviation that, with the rounding of samples added, is within the tolerance to the last bit.
+double largest_within(double tolerance, double rounding) {
+    double deviation = tolerance - rounding;
+    while (deviation + rounding > tolerance) deviation = std::nextafter(deviation, -1.0);
+    return deviation;
+}
+
 class Certifier {
   public:
     Certifier(const HeightGrid& grid, const RasterFrame& frame, const TinGoal& goal)
-        : grid_(grid), frame_(frame), goal_(goal) {}
+        : grid_(grid),
+          frame_(frame),
+          goal_(goal),
+          measure_(grid, frame,
+                   {largest_within(goal.tolerance, grid.sample_rounding()), goal.by_sample, goal.threads}) {}
 
-    /// All triangles are measured at first and in the end; between, those that mending has made.
     WrittenTin run(planet::TinMesh mesh) {
         WrittenTin tin;
         tin.mesh = std::move(mesh);
         place(tin);
+        measure_.measure(tin.mesh, tin.surface.vertices);
         for (;;) {
-            measure_all(tin);
-            Findings found = look(tin.mesh, tin.deviation);
-            tin.kept = found.too_far == 0;
-            tin.mendable = tin.kept || !found.samples.empty() || !found.border.empty();
-            tin.border_samples = std::move(found.border);
-            if (found.samples.empty() || !mend(tin, std::move(found.samples))) return tin;
+            tell(tin);
+            const std::vector<planet::FarTriangle> due = look(tin);
+            if (due.empty() || tin.mesh.triangles.size() + 2 * due.size() > goal_.max_triangles) break;
+            mend(tin, due);
         }
+        tin.deviation = measure_.take();
+        return tin;
     }
 
   private:
-    struct Findings {
-        std::size_t too_far = 0;          ///< triangles
-        std::vector<glm::ivec2> samples;  ///< the worst of each; corners cannot be inserted again
-        std::vector<glm::ivec2> border;   ///< those on a shared border
-    };
-
-    void measure_all(WrittenTin& tin) const {
-        tin.deviation =
-            planet::measure_written(tin.mesh, tin.surface.vertices, grid_, frame_, goal_.threads, goal_.by_sample);
-        tin.deviation_max = tin.deviation.max + grid_.sample_rounding();
+    void tell(WrittenTin& tin) const {
+        const planet::WrittenDeviation& found = measure_.found();
+        tin.deviation_max = found.max + grid_.sample_rounding();
+        tin.kept = found.too_far.empty();
     }
 
-    Findings look(const planet::TinMesh& mesh, const planet::WrittenDeviation& deviation) const {
-        Findings found;
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            if (!is_too_far(deviation.by_triangle[i])) continue;
-            ++found.too_far;
-            const glm::ivec2 worst = deviation.farthest[i];
-            if (std::ranges::any_of(mesh.triangles[i], [&](auto v) { return mesh.vertices[v] == worst; })) continue;
-            (goal_.border_is_shared && on_border(worst) ? found.border : found.samples).push_back(worst);
+    /// @return what can be mended here: corners cannot be inserted again, and a shared border is not only ours
+    std::vector<planet::FarTriangle> look(WrittenTin& tin) const {
+        std::vector<planet::FarTriangle> due;
+        tin.border_samples.clear();
+        for (const planet::FarTriangle& far : measure_.found().too_far) {
+            const auto& corners = tin.mesh.triangles[far.triangle];
+            if (std::ranges::any_of(corners, [&](auto v) { return tin.mesh.vertices[v] == far.sample; })) continue;
+            if (goal_.border_is_shared && on_border(far.sample))
+                tin.border_samples.push_back(far.sample);
+            else
+                due.push_back(far);
         }
-        return found;
+        tin.mendable = tin.kept || !due.empty() || !tin.border_samples.empty();
+        return due;
     }
 
-    bool is_too_far(double deviation) const { return deviation + grid_.sample_rounding() > goal_.tolerance; }
-
-    /// Keys of the triangles within the tolerance, ascending.
-    std::vector<std::uint64_t> within(const planet::TinMesh& mesh, const std::vector<double>& deviation) const {
-        std::vector<std::uint64_t> keys;
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-            if (!is_too_far(deviation[i])) keys.push_back(key(mesh, i));
-        std::sort(keys.begin(), keys.end());
-        return keys;
-    }
-
-    /// Of a triangle, by its corners. That two share one is as good as impossible, and would be noticed in the end.
-    static std::uint64_t key(const planet::TinMesh& mesh, std::size_t triangle) {
-        std::array<std::uint64_t, 3> corner{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const glm::ivec2 p = mesh.vertices[mesh.triangles[triangle][k]];
-            corner[k] = std::uint64_t{static_cast<std::uint32_t>(p.y)} << 32 | static_cast<std::uint32_t>(p.x);
-        }
-        std::sort(corner.begin(), corner.end());
-        std::uint64_t key = 0;
-        for (const std::uint64_t c : corner) {  // as splitmix64 stirs
-            key = (key ^ c) * 0xbf58476d1ce4e5b9u;
-            key ^= key >> 29;
-        }
-        return key;
-    }
-
-    /// Inserts the worst samples until no triangle that this makes is too far.
-    /// @return false, and the last state is measured, if that takes more triangles than there may be
-    bool mend(WrittenTin& tin, std::vector<glm::ivec2> samples) const {
-        std::vector<std::uint64_t> done = within(tin.mesh, tin.deviation.by_triangle);
-        tin.deviation = {};
-        while (!samples.empty()) {
-            tin.surface = {};
-            planet::TinMesh mended = planet::with_samples(tin.mesh, grid_, samples, goal_.features);
-            if (mended.triangles.size() > goal_.max_triangles) {
-                place(tin);
-                measure_all(tin);
-                return false;
-            }
-            tin.inserted += samples.size();
-            tin.mesh = std::move(mended);
-            const double step = tin.rounding.step;
-            place(tin);
-            if (tin.rounding.step != step) done.clear();  // everything has moved
-            planet::TinMesh fresh{tin.mesh.vertices, {}, {}};
-            for (std::size_t i = 0; i < tin.mesh.triangles.size(); ++i)
-                if (!std::binary_search(done.begin(), done.end(), key(tin.mesh, i)))
-                    fresh.triangles.push_back(tin.mesh.triangles[i]);
-            const planet::WrittenDeviation deviation =
-                planet::measure_written(fresh, tin.surface.vertices, grid_, frame_, goal_.threads);
-            samples = look(fresh, deviation).samples;
-            const std::vector<std::uint64_t> now = within(fresh, deviation.by_triangle);
-            const auto middle = static_cast<std::ptrdiff_t>(done.size());
-            done.insert(done.end(), now.begin(), now.end());
-            std::inplace_merge(done.begin(), done.begin() + middle, done.end());
-        }
-        return true;
+    void mend(WrittenTin& tin, const std::vector<planet::FarTriangle>& due) {
+        if (!mending_) mending_.emplace(std::move(tin.mesh));
+        tin.surface = {};
+        for (const planet::FarTriangle& far : due) tin.inserted += mending_->insert(far.sample, far.triangle);
+        tin.mesh = mending_->mesh(grid_);
+        const double step = tin.rounding.step;
+        place(tin);
+        if (tin.rounding.step != step)  // everything has moved
+            measure_.measure(tin.mesh, tin.surface.vertices);
+        else
+            measure_.measure_again(tin.mesh, tin.surface.vertices, mending_->take_changed());
     }
 
     void place(WrittenTin& tin) const {
@@ -161,6 +122,8 @@ class Certifier {
     const HeightGrid& grid_;
     const RasterFrame& frame_;
     const TinGoal& goal_;
+    planet::WrittenMeasure measure_;
+    std::optional<planet::TinMending> mending_;
 };
 
 void compare(const std::string& path, planet::MeshFormat format, const planet::SurfaceMesh& measured) {
@@ -189,10 +152,7 @@ TinFloor floor_below(const HeightGrid& grid, const RasterFrame& frame, double ba
 }
 
 WrittenTin as_written(planet::TinMesh mesh, const HeightGrid& grid, const RasterFrame& frame, const TinGoal& goal) {
-    WrittenTin tin = Certifier(grid, frame, goal).run(std::move(mesh));
-    tin.deviation.by_triangle = std::vector<double>();
-    tin.deviation.farthest = std::vector<glm::ivec2>();
-    return tin;
+    return Certifier(grid, frame, goal).run(std::move(mesh));
 }
 
 long check_closed(const planet::SurfaceMesh& solid, planet::MeshFrame frame) {

@@ -29,15 +29,14 @@ struct TinGoal {
     bool by_sample = false;  ///< the deviation of every sample, too
     /// Samples on the border of the grid are not inserted but listed: a neighbour has them too.
     bool border_is_shared = false;
-    std::optional<TinFloor> floor{};    ///< closes the mesh to a solid
-    planet::TinFeatures features = {};  ///< that the mesh was made with
+    std::optional<TinFloor> floor{};  ///< closes the mesh to a solid
 };
 
 struct WrittenTin {
     planet::TinMesh mesh;         ///< in the lattice; of a solid its top
     planet::SurfaceMesh surface;  ///< in the frame, rounded. Its first vertices and triangles are those of the mesh
     planet::MeshRounding rounding;
-    planet::WrittenDeviation deviation;      ///< without the rounding of samples, and without lists by triangle
+    planet::WrittenDeviation deviation;      ///< without the rounding of samples
     double deviation_max = 0;                ///< m, with it
     bool kept = true;                        ///< the tolerance
     bool mendable = true;                    ///< if not: the format's rounding is too coarse for the tolerance

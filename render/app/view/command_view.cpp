@@ -9,6 +9,7 @@
 #include "render/app/picture/render_options.h"
 #include "render/app/program.h"
 #include "render/app/report.h"
+#include "render/app/tile_report.h"
 #include "render/app/view/viewer.h"
 
 namespace render {
@@ -49,8 +50,7 @@ void fill(Report& report, const ViewerReport& view) {
     report.set("memory_late_bytes", view.memory_late_bytes);
     report.set("triangles", view.triangles);
     report.set("gpu_bytes", view.gpu_bytes);
-    report.set("tiles", view.tiles.tiles);
-    report.set("tile_bytes", view.tiles.tile_bytes);
+    report_tiles(report, view.tiles);
     report.set("deviation_max_m", view.deviation_max_m);
     report.set("pixel_deviation_max", view.pixel_deviation_max);
     report.set("settled", view.settled);

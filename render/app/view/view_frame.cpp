@@ -37,9 +37,10 @@ double ViewFrame::draw_moving(GlobeLooks& looks, const GlobeLooks::Frame& frame,
     settled_ = still_shown_ = false;
     const Camera camera = scaled(frame.camera, scale);
     make_target(moving_, camera.width, camera.height, looks.target_options(1));
+    moving_camera_ = camera;
+    moving_scale_ = static_cast<double>(camera.width) / frame.camera.width;
     moving_.bind();
     moving_.clear(0, 0, 0, 1);
-    const double pixel_scale = static_cast<double>(camera.width) / frame.camera.width;
     looks.draw({.camera = camera,
                 .part = {0, 0, camera.width, camera.height},
                 .exaggeration = frame.exaggeration,
@@ -47,7 +48,7 @@ double ViewFrame::draw_moving(GlobeLooks& looks, const GlobeLooks::Frame& frame,
                 .ground = frame.ground,
                 .morph_reach = frame.morph_reach,
                 .relief = frame.relief,
-                .pixel_scale = pixel_scale},
+                .pixel_scale = moving_scale_},
                moving_);
     gl().Finish();
     return seconds_since(start);
@@ -81,9 +82,20 @@ bool ViewFrame::draw_settled(GlobeLooks& looks, const GlobeLooks::Frame& frame, 
     if (rows_done_ >= height && !settled_) {
         looks.draw_blended(frame, next_);
         std::swap(still_, next_);
+        still_camera_ = frame.camera;
         settled_ = still_shown_ = true;
     }
     return settled_;
+}
+
+std::optional<glm::dvec3> ViewFrame::point_at(const glm::dvec2& pixel) const {
+    if (!shown()) return std::nullopt;
+    const Camera& camera = still_shown_ ? still_camera_ : moving_camera_;
+    const glm::ivec2 at(glm::floor(pixel / pixel_size()));
+    if (at.x < 0 || at.y < 0 || at.x >= camera.width || at.y >= camera.height) return std::nullopt;
+    const auto depth = static_cast<double>(shown().read_depth(at.x, at.y));
+    if (!(depth > 0)) return std::nullopt;
+    return ecef_from_screen(camera, {glm::dvec2(at) + shown().depth_sample(), depth});
 }
 
 void ViewFrame::show(int width, int height) const {

@@ -27,6 +27,11 @@ class ViewFrame {
     void show(int width, int height) const;
     /// The same as RGB, top row first.
     std::vector<std::uint8_t> rgb() const;
+    /// What the picture that is shown has in a pixel, by its depth: within a pixel of it, to depth_resolution(). Nothing:
+    /// the sky, or outside. @param pixel from the top left, of the size that draw_...() were given
+    std::optional<glm::dvec3> point_at(const glm::dvec2& pixel) const;
+    /// Of the picture that is shown, in pixels of the view: 1 or more.
+    double pixel_size() const { return still_shown_ ? 1 : 1 / moving_scale_; }
     int width() const { return shown().width(); }
     int height() const { return shown().height(); }
 
@@ -34,6 +39,8 @@ class ViewFrame {
     const Framebuffer& shown() const { return still_shown_ ? still_ : moving_; }
 
     Framebuffer moving_, still_, next_;  ///< next_: the settled picture while it is not whole
+    Camera moving_camera_, still_camera_;
+    double moving_scale_ = 1;  ///< of moving_camera_'s pixels to those of the view
     int samples_ = 1;
     int rows_done_ = 0;
     int rows_at_once_ = 0;  ///< as measured; 0: not yet

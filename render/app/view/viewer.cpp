@@ -120,7 +120,7 @@ void ViewerSession::begin() {
     render_.size = {window_.width(), window_.height()};
     const DrawnSurface& surface = *data_.surface;
     navigator_.emplace(
-        Ground{[this](const glm::dvec3& origin, const glm::dvec3& way) { return pick_.first_hit(origin, way); },
+        Ground{[this](const glm::dvec3& origin, const glm::dvec3& way) { return point_under(origin, way); },
                [&surface](const glm::dvec3& normal) { return surface.ground(normal); }},
         pose_of_camera(surface.camera(render_)));
     // The air of the first frame is worth waiting for.
@@ -141,6 +141,29 @@ void ViewerSession::begin() {
 Lens ViewerSession::lens() const {
     return {focal_length_px(render_.fov, render_.size.width, render_.size.height), render_.size.width,
             render_.size.height};
+}
+
+/// What a hand takes hold of: the ground, or an imported mesh that is drawn off it.
+std::optional<glm::dvec3> ViewerSession::point_under(const glm::dvec3& origin, const glm::dvec3& way) {
+    const auto pixel = pixel_of_direction(navigator_->pose(), lens(), way);
+    if (const auto mesh = pixel ? mesh_at(*pixel) : std::nullopt) return origin + glm::dot(*mesh - origin, way) * way;
+    return pick_.first_hit(origin, way);
+}
+
+/// Where the picture shows an imported mesh that is so far off the ground that it can be told from it, ecef. No ray is
+/// followed through its triangles, of which there may be millions: its depth was drawn.
+std::optional<glm::dvec3> ViewerSession::mesh_at(const glm::dvec2& pixel) const {
+    const bool meshes = std::ranges::any_of(
+        render_.layers, [](const LayerOptions& l) { return l.shown && l.opacity > 0 && is_mesh(l); });
+    if (!meshes) return std::nullopt;
+    const auto point = frame_.point_at(pixel);
+    if (!point) return std::nullopt;
+    const double distance = glm::distance(camera_.eye, *point);
+    const auto ground = planet::SegmentSurface(mesh_->segments()).point_at(planet::normal_from_ecef(wgs84, *point));
+    const double ground_off = ground ? glm::distance(*ground, *point) : distance;
+    const double pixels = 2 * frame_.pixel_size() + mesh_->pixel_deviation();
+    if (ground_off < depth_resolution(distance) + pixels * distance / camera_.focal_px) return std::nullopt;
+    return point;
 }
 
 /// How long there is nothing to do but to wait for the user. Other threads need the processor, too.

@@ -109,17 +109,7 @@ void ViewerSession::fill_status() {
     panels_.tilt = static_cast<float>(pose.pitch + 90 * degrees);
     panels_.eye_line = "Eye " + length_text(navigator_->clearance()) + " above ground";
     const auto pixel_m = [&](const glm::dvec3& point) { return glm::distance(point, pose.eye()) / lens.focal; };
-    panels_.cursor_place.clear();
-    if (const auto at = pick_.first_hit(pose.eye(), ray(pose, lens, cursor_)); at && cursor_.x >= 0) {
-        const glm::dvec3 normal = planet::normal_from_ecef(wgs84, *at);
-        const planet::Geodetic place = planet::geodetic_from_normal(normal);
-        // Of the finest surface, and never exaggerated: what `octaglobe query height` answers.
-        const double found = static_cast<double>(data_.surface->field.height(normal));
-        const planet::GeoidUndulation N =
-            data_.surface->geoid ? data_.surface->geoid->undulation(normal) : planet::GeoidUndulation{};
-        panels_.cursor_place = place_text(place, place_format_, pixel_m(*at)) + "     " +
-                               heights_text({found}, planet::OrthometricHeight{found} + N, pixel_m(*at));
-    }
+    panels_.cursor_place = cursor_.x >= 0 ? text_under_cursor(pose, lens) : "";
     panels_.scale_px = 0;
     if (const auto middle = pick_.first_hit(pose.eye(), ray(pose, lens, lens.middle()))) {
         const ScaleBar bar = scale_bar(pixel_m(*middle), 0.16 * lens.width);
@@ -134,6 +124,23 @@ void ViewerSession::fill_status() {
     else if (mesh_->patches().missing() > 0 || (resting_ && !frame_.settled()))
         panels_.activity = "drawing";
     if (frozen_) panels_.activity = "culling is frozen";
+}
+
+/// Place and heights; "mesh" before those of an imported one.
+std::string ViewerSession::text_under_cursor(const Pose& pose, const Lens& lens) {
+    const auto mesh = mesh_at(cursor_);
+    const auto at = mesh ? mesh : pick_.first_hit(pose.eye(), ray(pose, lens, cursor_));
+    if (!at) return "";
+    const planet::NormalPosition p = planet::position_from_ecef(wgs84, *at);
+    const double pixel_m = glm::distance(*at, pose.eye()) / lens.focal;
+    const std::string place = place_text(planet::geodetic_from_normal(p.normal), place_format_, pixel_m) + "     ";
+    const planet::GeoidUndulation N =
+        data_.surface->geoid ? data_.surface->geoid->undulation(p.normal) : planet::GeoidUndulation{};
+    // Never exaggerated. Of the ground: that of the finest surface, which `octaglobe query height` answers.
+    if (mesh && render_.exaggeration == 0) return place + "mesh";
+    const double height =
+        mesh ? (p.h - N).m / render_.exaggeration : static_cast<double>(data_.surface->field.height(p.normal));
+    return place + (mesh ? "mesh " : "") + heights_text({height}, planet::OrthometricHeight{height} + N, pixel_m);
 }
 
 /// Parallels are named where they meet the meridian next to the middle of the picture, and the other way around.

@@ -50,6 +50,8 @@ class ViewerSession {
     void count_errors();
     Lens lens() const;
     double patience() const;
+    std::optional<glm::dvec3> point_under(const glm::dvec3& origin, const glm::dvec3& way);
+    std::optional<glm::dvec3> mesh_at(const glm::dvec2& pixel) const;
     /// Whether the frames that were asked for are still being drawn.
     bool counts_frames() const { return report_.frames < static_cast<std::uint64_t>(options_.frames); }
     bool automatic() const { return options_.frames > 0 || !options_.screenshot.empty(); }
@@ -68,6 +70,7 @@ class ViewerSession {
     // viewer_panels.cpp
     void fill_panels();
     void fill_status();
+    std::string text_under_cursor(const Pose& pose, const Lens& lens);
     void fill_labels();
     void fill_statistics();
     void fill_settings();

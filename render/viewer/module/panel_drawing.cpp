@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 
+#include "planet/error.h"
 #include "render/viewer/module/fonts.h"
 
 namespace render {
@@ -62,6 +64,28 @@ void shaded_text(ImDrawList& list, ImVec2 at, ImU32 ink_color, const char* text,
     list.AddText(at, ink_color, text, end);
 }
 
+void accent_text_wrapped(const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, color(accent));
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+}
+
+/// How many groups go into the first of two columns, so that they are as even as they come.
+std::size_t even_split(std::span<const HelpGroup> groups) {
+    const auto rows = [](std::span<const HelpGroup> some) {
+        std::size_t sum = 0;
+        for (const HelpGroup& group : some) sum += group.lines.size() + 2;
+        return sum;
+    };
+    const auto taller = [&](std::size_t split) {
+        return std::max(rows(groups.first(split)), rows(groups.subspan(split)));
+    };
+    std::size_t best = 0;
+    for (std::size_t split = 1; split <= groups.size(); ++split)
+        if (taller(split) < taller(best)) best = split;
+    return best;
+}
+
 }  // namespace
 
 PanelDrawing::PanelDrawing(GLFWwindow* window, double scale) : scale_(static_cast<float>(scale)) {
@@ -75,7 +99,9 @@ PanelDrawing::PanelDrawing(GLFWwindow* window, double scale) : scale_(static_cas
     text_ = fonts.text;
     title_ = fonts.title;
     ImGui_ImplGlfw_InitForOpenGL(window, true);
-    ImGui_ImplOpenGL3_Init("#version 450 core");
+    if (!ImGui_ImplOpenGL3_Init("#version 450 core"))
+        throw planet::Error(planet::Fault::no_graphics, "window", "Dear ImGui finds no OpenGL",
+                            "libGL.so.1 or libEGL.so.1");
 }
 
 PanelDrawing::~PanelDrawing() {
@@ -207,8 +233,9 @@ void PanelDrawing::draw_notice(const Panels& panels) {
 
 bool PanelDrawing::begin_panel(const char* title, float x, float y, float pivot_x, float pivot_y, float width) {
     ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, {pivot_x, pivot_y});
-    ImGui::SetNextWindowSizeConstraints({width, 0},
-                                        {width > 0 ? width : 1e6f, ImGui::GetIO().DisplaySize.y - unit(64)});
+    // Above the line of status, with as much room below as there is at the sides.
+    const float room = ImGui::GetIO().DisplaySize.y - unit(32 + 16) - (pivot_y > 0 ? unit(16) : y);
+    ImGui::SetNextWindowSizeConstraints({width, 0}, {width > 0 ? width : 1e6f, room});
     constexpr ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                                        ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
                                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse |
@@ -227,32 +254,33 @@ void PanelDrawing::end_panel() {
 void PanelDrawing::draw_help(Panels& panels) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     begin_panel("Keys", 0.5f * size.x, 0.5f * (size.y - unit(32)), 0.5f, 0.5f, 0);
-    // Two columns of groups, as even as they come.
-    std::size_t lines = 0, half = 0;
-    for (const HelpGroup& g : panels.help_groups) lines += g.lines.size() + 2;
-    const auto column = [&](std::size_t from, std::size_t to) {
-        ImGui::BeginGroup();
-        const float left = ImGui::GetCursorPosX();
-        for (std::size_t i = from; i < to; ++i) {
-            const HelpGroup& g = panels.help_groups[i];
-            ImGui::Dummy({0, unit(4)});
-            ImGui::TextColored(color(accent), "%s", g.title.c_str());
-            for (const HelpLine& l : g.lines) {
-                ImGui::TextUnformatted(l.keys.c_str());
-                ImGui::SameLine(0, 0);
-                ImGui::SetCursorPosX(left + unit(136));
-                ImGui::TextDisabled("%s", l.what.c_str());
-            }
-        }
-        ImGui::EndGroup();
-    };
-    std::size_t split = 0;
-    while (split < panels.help_groups.size() && half + panels.help_groups[split].lines.size() / 2 < lines / 2)
-        half += panels.help_groups[split++].lines.size() + 2;
-    column(0, split);
-    ImGui::SameLine(0, unit(40));
-    column(split, panels.help_groups.size());
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(unit(8), unit(4)));
+    const auto groups = std::span<const HelpGroup>(panels.help_groups);
+    const std::size_t split = even_split(groups);
+    help_column(groups.first(split));
+    ImGui::SameLine(0, unit(32));
+    help_column(groups.subspan(split));
+    ImGui::PopStyleVar();
     end_panel();
+}
+
+void PanelDrawing::help_column(std::span<const HelpGroup> groups) {
+    float keys = 0;
+    for (const HelpGroup& group : groups)
+        for (const HelpLine& help : group.lines) keys = std::max(keys, ImGui::CalcTextSize(help.keys.c_str()).x);
+    ImGui::BeginGroup();
+    const float left = ImGui::GetCursorPosX();
+    for (const HelpGroup& group : groups) {
+        ImGui::Dummy({0, unit(4)});
+        ImGui::TextColored(color(accent), "%s", group.title.c_str());
+        for (const HelpLine& help : group.lines) {
+            ImGui::TextUnformatted(help.keys.c_str());
+            ImGui::SameLine(0, 0);
+            ImGui::SetCursorPosX(left + keys + unit(16));
+            ImGui::TextDisabled("%s", help.what.c_str());
+        }
+    }
+    ImGui::EndGroup();
 }
 
 void PanelDrawing::draw_settings(Panels& panels) {
@@ -307,7 +335,7 @@ void PanelDrawing::draw_layer_rows(std::vector<LayerRow>& rows) {
         ImGui::PopClipRect();
         ImGui::SameLine(unit(136));
         ImGui::SetNextItemWidth(unit(88));
-        row.changed |= ImGui::SliderFloat("##opacity", &row.opacity, 0, 1, "%.2f", ImGuiSliderFlags_NoInput);
+        row.changed |= ImGui::SliderFloat("##opacity", &row.opacity, 0, 1, "", ImGuiSliderFlags_NoInput);
         const auto arrow = [&](const char* id, ImGuiDir way, bool there, int raise) {
             ImGui::SameLine(0, unit(4));
             if (!there) return ImGui::Dummy({height, height});
@@ -322,8 +350,8 @@ void PanelDrawing::draw_layer_rows(std::vector<LayerRow>& rows) {
 }
 
 void PanelDrawing::draw_statistics(Panels& panels) {
-    const float x = panels.settings ? unit(16 + 304 + 16) : unit(16);
-    begin_panel("Statistics", x, unit(16), 0, 0, unit(304));
+    // Below the compass, beside the settings in any window that is wide enough for both.
+    begin_panel("Statistics", ImGui::GetIO().DisplaySize.x - unit(16), unit(16 + 48 + 16), 1, 0, unit(304));
     for (const Plot& plot : panels.plots) {
         ImGui::TextDisabled("%s", plot.name.c_str());
         ImGui::SameLine(unit(112));
@@ -366,7 +394,7 @@ void PanelDrawing::draw_go_to(Panels& panels) {
     if (panels.go_to_answer.empty())
         ImGui::TextDisabled("Degrees, or an MGRS square. Enter flies there.");
     else
-        ImGui::TextColored(color(accent), "%s", panels.go_to_answer.c_str());
+        accent_text_wrapped(panels.go_to_answer);
     panels.wants_frame = true;  // the text cursor blinks
     end_panel();
 }

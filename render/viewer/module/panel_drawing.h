@@ -2,6 +2,7 @@
 // Panels drawn by Dear ImGui.
 
 #include <memory>
+#include <span>
 
 #include "render/viewer/panels.h"
 
@@ -32,6 +33,7 @@ class PanelDrawing {
     void draw_compass(Panels& panels);
     void draw_notice(const Panels& panels);
     void draw_help(Panels& panels);
+    void help_column(std::span<const HelpGroup> groups);
     void draw_settings(Panels& panels);
     void draw_layer_rows(std::vector<LayerRow>& rows);
     void draw_statistics(Panels& panels);

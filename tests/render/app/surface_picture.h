@@ -34,10 +34,21 @@ class SurfacePicture {
         rgba.resize(rgba.size() / 4);
         return rgba;
     }
+    /// Depth, 0 for the sky.
+    template <class Draw>
+    std::vector<float> depths(const Camera& camera, Draw draw) {
+        draw_picture(camera, positions_, 0, draw);
+        return target_.read_depth();
+    }
 
   private:
     template <class Draw>
     std::vector<float> picture(const Camera& camera, Program& program, float sky, Draw draw) {
+        draw_picture(camera, program, sky, draw);
+        return target_.read_rgba_float();
+    }
+    template <class Draw>
+    void draw_picture(const Camera& camera, Program& program, float sky, Draw draw) {
         target_.bind();
         target_.clear(sky, 0, 0, 0);
         program.use();
@@ -47,7 +58,6 @@ class SurfacePicture {
         gl().Enable(GL_CULL_FACE);
         draw();
         gl().Disable(GL_CULL_FACE);
-        return target_.read_rgba_float();
     }
     static std::optional<std::string_view> source(std::string_view name) {
         if (name == "position.frag.glsl")

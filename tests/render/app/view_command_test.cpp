@@ -375,5 +375,86 @@ TEST(ViewCommandAlone, WithoutTheModuleItSaysSo) {
     EXPECT_NE(content(folder / "err").find("octaglobe_window"), std::string::npos) << content(folder / "err");
 }
 
+TEST(ViewCommandAlone, AStoreThatIsNoneIsRefusedBeforeAWindowOpens) {
+    const ScratchFolder folder;
+    const ScratchVariable display("DISPLAY", ""), wayland("WAYLAND_DISPLAY", "");  // a window would be another fault
+    std::ofstream(folder / "bad.octa") << "no store";
+    std::ofstream(folder / "empty.octa") << "";
+    for (const char* name : {"bad.octa", "empty.octa", "missing.octa"}) {
+        const Outcome outcome = run(folder.path(), words(std::string("view --store ") + name));
+        EXPECT_EQ(outcome.status, 3) << outcome.err;
+        EXPECT_NE(outcome.err.find(name), std::string::npos) << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    }
+}
+
+/// Libraries that the loader finds first, and that are none.
+void hide_libraries(const ScratchFolder& folder, const std::vector<std::string>& names) {
+    for (const std::string& name : names) std::ofstream(folder.path() / name) << "";
+}
+
+TEST_F(ViewCommand, WithEglAloneItOpensPanelsAndAll) {
+    const ScratchFolder hidden;
+    hide_libraries(hidden, {"libGLX.so.0", "libGL.so.1", "libGL.so"});
+    const ScratchVariable path("LD_LIBRARY_PATH", hidden.path().c_str());
+    const auto view = report("--size 400x300 --frames 3");
+    EXPECT_EQ(view["context"], "EGL");
+    EXPECT_EQ(view["gl_errors"], 0);
+}
+
+// OSMesa, which has no windows, may be there.
+TEST_F(ViewCommand, WithNeitherGlxNorEglItSaysSo) {
+    const ScratchFolder hidden;
+    hide_libraries(hidden, {"libGLX.so.0", "libGL.so.1", "libGL.so", "libEGL.so.1"});
+    const ScratchVariable path("LD_LIBRARY_PATH", hidden.path().c_str());
+    const Outcome outcome = run(folder_.path(), words("view --size 400x300 --frames 3"));
+    EXPECT_EQ(outcome.status, 4);
+    for (const char* part : {"octaglobe: window: ", "GLX", "EGL", "octaglobe render"})
+        EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
+// Twice the density: the line of status is 64 pixels high and not 32.
+TEST_F(ViewCommand, PanelsFollowTheDensityOfTheDisplay) {
+    if (!has_program("xprop")) GTEST_SKIP() << "xprop is not installed";
+    const auto darkened = [&](int above_bottom) {
+        report("--size 400x300 --screenshot panels.png");
+        report("--size 400x300 --screenshot bare.png --bare");
+        const planet::Image panels = planet::read_image(folder_ / "panels.png"),
+                            bare = planet::read_image(folder_ / "bare.png");
+        return panels.pixel(200, 300 - above_bottom)[2] < bare.pixel(200, 300 - above_bottom)[2];
+    };
+    EXPECT_TRUE(darkened(24));
+    EXPECT_FALSE(darkened(48));
+    ASSERT_EQ(
+        run_quietly({"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER", "Xft.dpi: 192"}), 0);
+    EXPECT_TRUE(darkened(48));
+}
+
+/// 6000 m above the geoid over Blanca Peak.
+constexpr const char* plate =
+    "ply\nformat ascii 1.0\ncomment frame source\ncomment crs EPSG:4326\ncomment vertical_datum egm96\n"
+    "comment xy_unit degrees\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+    "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    "-105.52 37.55 6000\n-105.46 37.55 6000\n-105.46 37.61 6000\n-105.52 37.61 6000\n3 0 1 2\n3 0 2 3\n";
+
+// Four notches bring the eye to exp(-0.96) of its distance from what is under the cursor: the plate, not the ground.
+TEST_F(ViewCommand, AMeshUnderTheCursorIsWhatAHandTakesHoldOf) {
+    std::ofstream(folder_ / "plate.ply") << plate;
+    Process process = view("--at 37.58,-105.49 --range 10km --size 401x301 --layer plate.ply");
+    const auto height = [](const std::string& line) {
+        return parse_distance("--height", value_of(line, "--height"), {0, 1e9});
+    };
+    const double before = height(wait_for_globe(process));
+    type_and_see(process, {"mousemove", "200", "150"});
+    for (int i = 0; i < 4; ++i) type({"click", "4"});
+    rest(1s);
+    const double after = height(copy_view(process));
+    constexpr double ground_m = 4195, plate_m = 5983;  // above the ellipsoid
+    EXPECT_NEAR(after, before - (1 - std::exp(-0.96)) * (before + ground_m - plate_m), 50);
+    type({"key", "ctrl+q"});
+    EXPECT_EQ(process.wait().status, 0);
+}
+
 }  // namespace
 }  // namespace render
