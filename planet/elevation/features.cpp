@@ -1,5 +1,7 @@
 #include "planet/elevation/features.h"
 
+#include <malloc.h>
+
 #include <cmath>
 #include <new>
 #include <span>
@@ -44,7 +46,10 @@ void turn_toward(double longitude, Features& features) {
 Features read_features(const std::string& path, const FeatureOptions& options) {
     check_source_file(path, "a vector file, e.g. GeoJSON, GeoPackage or Shapefile");
     try {
-        return driver().read(path, options);
+        Features features = driver().read(path, options);
+        // Of a KML or GeoJSON GDAL makes a tree: 1.3 GB of a million points, which would stay with the process.
+        ::malloc_trim(0);
+        return features;
     } catch (const std::bad_alloc&) {
         throw Error(Fault::bad_data, path, "does not fit into memory");
     }

@@ -2,6 +2,9 @@
 
 #include "planet/elevation/image_io.h"
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -180,6 +183,28 @@ Image read_image(const std::string& path, const ImageOptions& options) {
         if (n == 1 && !source->deep && !source->linear) return read_bytes(*source);
         return bytes_from_linear(read_linear(*source, n));
     });
+}
+
+Image read_image_bytes(std::string_view bytes, const std::string& known_as, const ImageOptions& options) {
+    // Libraries read files: this one is in memory.
+    struct MemoryFile {
+        int descriptor = ::memfd_create("picture", MFD_CLOEXEC);
+        ~MemoryFile() {
+            if (descriptor >= 0) ::close(descriptor);
+        }
+    } const file;
+    const auto refuse = [&](const char* why) { throw Error(Fault::bad_data, known_as, why, a_picture); };
+    for (std::string_view rest = bytes; !rest.empty();) {
+        const auto written = ::write(file.descriptor, rest.data(), rest.size());
+        if (written < 0) refuse("does not fit into memory");
+        rest.remove_prefix(static_cast<std::size_t>(written));
+    }
+    try {
+        return read_image("/proc/self/fd/" + std::to_string(file.descriptor), options);
+    } catch (const Error&) {
+        refuse("is no picture that can be read");
+        throw;
+    }
 }
 
 FloatImage read_float_image(const std::string& path, const ImageOptions& options) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "planet/elevation/image.h"
 #include "planet/elevation/make_file.h"
@@ -20,6 +21,8 @@ struct ImageOptions {
 /// samples are rounded, and linear light is encoded, to 8-bit sRGB. Throws Error for a file that is missing, empty,
 /// damaged, cut short, no picture, or too large.
 Image read_image(const std::string& path, const ImageOptions& options = {});
+/// The same of a file's bytes. @param known_as its name in errors
+Image read_image_bytes(std::string_view bytes, const std::string& known_as, const ImageOptions& options = {});
 /// The same in linear light.
 FloatImage read_float_image(const std::string& path, const ImageOptions& options = {});
 

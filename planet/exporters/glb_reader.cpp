@@ -268,6 +268,9 @@ class GlbScene {
         const Json& material = json_.at("materials").at(whole(primitive, "material"));
         const Json pointer = material.value("/pbrMetallicRoughness/baseColorTexture"_json_pointer, Json());
         if (!pointer.is_object()) return;
+        const Json factor = material.value("/pbrMetallicRoughness/baseColorFactor"_json_pointer, Json());
+        if (factor.is_array() && factor.size() == 4)
+            for (int k = 0; k < 4; ++k) read_.looks.base_color[k] = factor[static_cast<std::size_t>(k)].get<float>();
         const Json& texture = json_.at("textures").at(whole(pointer, "index"));
         if (!texture.contains("source")) return;
         const Json& image = json_.at("images").at(whole(texture, "source"));

@@ -60,6 +60,8 @@ struct MeshLooks {
     /// By vertex, red, green, blue, alpha, 0..1, as the file has them; or empty. A .ply holds 8 bits of each, an .obj no alpha.
     std::vector<glm::vec4> colors = {};
     std::string picture = {};  ///< the bytes of a PNG or JPEG file; or empty
+    /// What colours and the picture are multiplied with, linear, where a material has a picture: as read, not written.
+    glm::vec4 base_color = glm::vec4(1);
 };
 
 /// Takes the bytes of a file in order, some 1 MB or more at a time. What it throws passes through write_mesh().

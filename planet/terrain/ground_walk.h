@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
+#include <vector>
 
 #include "planet/mesh/tile_layout.h"
 #include "planet/octahedron/octahedron_map.h"
@@ -29,6 +31,14 @@ struct CellReach {
     double chord = 0;   ///< to the farthest corner
 };
 
+/// Where a walk can begin: a cell that was entered.
+struct GroundPart {
+    std::shared_ptr<const Tile> tile;  ///< that knows it
+    unsigned local;                    ///< its number there: 1 is the root, 2 n and 2 n + 1 the halves of n
+    Corners corners;
+    bool counter_clockwise;
+};
+
 /// A Visitor has
 ///     bool enter(const Corners&)        whether to look at what is in a cell; if so, leave() follows
 ///     void leave()
@@ -49,18 +59,58 @@ class GroundWalk {
         }
     }
 
+    /// The planet as `least` parts or more, unless there are fewer, that planet() goes through one behind the other.
+    /// For visitors that only look at the cell in enter(), and in leave() at nothing.
+    std::vector<GroundPart> parts(std::size_t least) {
+        std::vector<GroundPart> parts, next;
+        for (int face = 0; face < face_count; ++face)
+            if (visitor_.enter(face_corners(face)))
+                if (const auto tile = tiles_.tile(LocationCode::face_root(face)))
+                    parts.push_back({tile, 1, face_corners(face), true});
+        for (bool more = true; more && parts.size() < least; std::swap(parts, next)) {
+            more = false;
+            next.clear();
+            for (const GroundPart& part : parts) more |= split(part, next);
+        }
+        return parts;
+    }
+    void part(const GroundPart& p) { below(*p.tile, p.local, p.corners, p.counter_clockwise); }
+
   private:
+    // The tile that goes on where one ends, if there is one.
+    std::shared_ptr<const Tile> tile_below(const Tile& tile, unsigned local) const {
+        const unsigned position = local - (1u << tile.depth);
+        if (!tile.child_exists[position] || !(tile.child_deviation[position] > 0)) return nullptr;
+        const int level = static_cast<int>(std::bit_width(local)) - 1;
+        auto next = tiles_.tile(LocationCode(tile.root.bits() << level | (local ^ 1u << level)));
+        return next && !next->damaged && next->deviation[1] > 0 ? next : nullptr;
+    }
+
+    // The next step of a walk. @return false for one of the finest cells, which stays as it is
+    bool split(const GroundPart& p, std::vector<GroundPart>& into) {
+        if (p.local >> p.tile->depth) {
+            auto next = tile_below(*p.tile, p.local);
+            into.push_back(next ? GroundPart{std::move(next), 1, p.corners, p.counter_clockwise} : p);
+            return into.back().tile != p.tile;
+        }
+        if (!(p.tile->deviation[p.local] > 0)) {
+            into.push_back(p);
+            return false;
+        }
+        const glm::dvec3 m = split_vertex(p.corners);
+        for (unsigned child = 0; child < 2; ++child) {
+            const Corners c = child_corners(p.corners, m, static_cast<int>(child));
+            if (visitor_.enter(c)) into.push_back({p.tile, 2 * p.local + child, c, !p.counter_clockwise});
+        }
+        return true;
+    }
+
     // All of these are called inside enter() of the cell.
     void below(const Tile& tile, unsigned local, const Corners& corners, bool counter_clockwise) {
         if (local >> tile.depth) {
-            const unsigned position = local - (1u << tile.depth);
-            if (tile.child_exists[position] && tile.child_deviation[position] > 0) {
-                const int level = static_cast<int>(std::bit_width(local)) - 1;
-                const auto next = tiles_.tile(LocationCode(tile.root.bits() << level | (local ^ 1u << level)));
-                if (next && !next->damaged && next->deviation[1] > 0) {
-                    below(*next, 1, corners, counter_clockwise);
-                    return;
-                }
+            if (const auto next = tile_below(tile, local)) {
+                below(*next, 1, corners, counter_clockwise);
+                return;
             }
         } else if (tile.deviation[local] > 0) {
             const glm::dvec3 m = split_vertex(corners);

@@ -34,11 +34,13 @@ struct PackedTriangle {
     }
 };
 
-// The cells of the ground around the eye.
+// The cells of the ground around the eye, or of a part of it.
 class RegionVisitor {
   public:
-    RegionVisitor(const SightFrame& frame, const Ellipsoid& e, const glm::dvec3& eye, double radius)
-        : frame_(frame), e_(e), eye_(eye), chord_(1.01 * radius / e.b) {}
+    /// @param all counts the cells of all parts
+    RegionVisitor(const SightFrame& frame, const Ellipsoid& e, const glm::dvec3& eye, double radius,
+                  std::atomic<std::size_t>& all)
+        : frame_(frame), e_(e), eye_(eye), chord_(1.01 * radius / e.b), all_(all) {}
 
     bool enter(const Corners& corners) const {
         const CellReach reach(corners);
@@ -53,7 +55,7 @@ class RegionVisitor {
     }
     void visit(const GroundCell& cell) {
         triangles.emplace_back(sight_triangle(frame_, e_, cell));
-        if (triangles.size() > viewshed_ground_max)
+        if (++all_ > viewshed_ground_max)
             throw Error(Fault::bad_usage, "radius",
                         "holds more than " + std::to_string(viewshed_ground_max) + " cells of the ground",
                         "a smaller radius, or a store that is less fine");
@@ -66,7 +68,33 @@ class RegionVisitor {
     const Ellipsoid& e_;
     glm::dvec3 eye_;
     double chord_;
+    std::atomic<std::size_t>& all_;
 };
+
+// In the order of one walk, whatever the number of threads. @param progress is told the share
+std::vector<PackedTriangle> gather(const TileReader& tiles, const RegionVisitor& region, unsigned threads,
+                                   const std::function<void(double)>& progress) {
+    constexpr std::size_t pieces = 512;
+    RegionVisitor visitor = region;
+    const std::vector<GroundPart> parts = GroundWalk(tiles, visitor).parts(pieces);
+    std::vector<std::vector<PackedTriangle>> found(parts.size());
+    std::atomic<std::size_t> done = 0;
+    parallel_for(parts.size(), threads, [&](std::size_t i) {
+        RegionVisitor of_part = region;
+        GroundWalk(tiles, of_part).part(parts[i]);
+        found[i] = std::move(of_part.triangles);
+        if (progress) progress(static_cast<double>(++done) / static_cast<double>(parts.size()));
+    });
+    std::size_t count = 0;
+    for (const auto& part : found) count += part.size();
+    std::vector<PackedTriangle> triangles;
+    triangles.reserve(count);
+    for (auto& part : found) {
+        triangles.insert(triangles.end(), part.begin(), part.end());
+        part = {};
+    }
+    return triangles;
+}
 
 // What a sector knows of a triangle without looking at it.
 struct Entry {
@@ -100,15 +128,18 @@ class Sectors {
     Sectors(const std::vector<PackedTriangle>& triangles, double bulge, std::size_t count, unsigned threads)
         : triangles_(triangles), bulge_(bulge), count_(count) {
         std::vector<Entry> entries(triangles.size());
+        std::vector<Reach> reaches(triangles.size());
         parallel_for(chunks(entries.size()), threads, [&](std::size_t chunk) {
-            for (std::size_t i = chunk * chunk_size; i < std::min((chunk + 1) * chunk_size, entries.size()); ++i)
+            for (std::size_t i = chunk * chunk_size; i < std::min((chunk + 1) * chunk_size, entries.size()); ++i) {
                 entries[i] = entry_of(triangles[i], static_cast<std::uint32_t>(i), bulge);
+                reaches[i] = reach_of(entries[i]);
+            }
         });
-        std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-            return a.nearest != b.nearest ? a.nearest < b.nearest : a.triangle < b.triangle;
+        fill(entries, reaches);
+        parallel_for(count_, threads, [&](std::size_t sector) {
+            sort(sector);
+            bound_blocks(sector);
         });
-        fill(entries);
-        parallel_for(count_, threads, [&](std::size_t sector) { bound_blocks(sector); });
     }
 
     /// Whether a target is seen. @param foot of the target on the ground @param top of it, in the frame
@@ -148,9 +179,13 @@ class Sectors {
     }
 
     // The sectors that a triangle reaches into, the last one perhaps beyond the end.
-    std::pair<std::size_t, std::size_t> range(const Entry& e) const {
+    struct Reach {
+        std::uint32_t first, last;
+    };
+    Reach reach_of(const Entry& e) const {
         const PackedTriangle& t = triangles_[e.triangle];
-        if (!(e.nearest > 0)) return {0, count_ - 1};
+        const auto all = static_cast<std::uint32_t>(count_ - 1);
+        if (!(e.nearest > 0)) return {0, all};
         double azimuth[3], low = 0, high = 0;
         for (int k = 0; k < 3; ++k) {
             azimuth[k] = std::atan2(static_cast<double>(t.p[k][0]), static_cast<double>(t.p[k][1]));
@@ -158,27 +193,35 @@ class Sectors {
             low = std::min(low, turn);
             high = std::max(high, turn);
         }
-        if (high - low >= pi - 1e-9) return {0, count_ - 1};
+        if (high - low >= pi - 1e-9) return {0, all};
         const double width = 2 * pi / static_cast<double>(count_);
         const double west = azimuth[0] + low - 1e-7 * width;
-        const std::size_t first = sector_of(west < -pi ? west + 2 * pi : west);
-        const auto more = static_cast<std::size_t>((high - low) / width * (1 + 1e-6)) + 1;
-        return {first, first + std::min(more, count_ - 1)};
+        const auto first = static_cast<std::uint32_t>(sector_of(west < -pi ? west + 2 * pi : west));
+        const auto more = static_cast<std::uint32_t>((high - low) / width * (1 + 1e-6)) + 1;
+        return {first, first + std::min(more, all)};
     }
 
-    void fill(const std::vector<Entry>& sorted) {
+    void fill(const std::vector<Entry>& entries, const std::vector<Reach>& reaches) {
         start_.assign(count_ + 1, 0);
-        for (const Entry& e : sorted)
-            for (auto [s, last] = range(e); s <= last; ++s) ++start_[s % count_ + 1];
+        for (auto [s, last] : reaches)
+            for (; s <= last; ++s) ++start_[s % count_ + 1];
         for (std::size_t s = 0; s < count_; ++s) start_[s + 1] += start_[s];
         entries_.resize(start_.back());
         std::vector<std::size_t> at(start_.begin(), start_.end() - 1);
-        for (const Entry& e : sorted)
-            for (auto [s, last] = range(e); s <= last; ++s) entries_[at[s % count_]++] = e;
+        for (std::size_t i = 0; i < entries.size(); ++i)
+            for (auto [s, last] = reaches[i]; s <= last; ++s) entries_[at[s % count_]++] = entries[i];
         block_start_.assign(count_ + 1, 0);
         for (std::size_t s = 0; s < count_; ++s)
             block_start_[s + 1] = block_start_[s] + (start_[s + 1] - start_[s] + block - 1) / block;
         block_slope_.resize(block_start_.back());
+    }
+
+    void sort(std::size_t sector) {
+        std::sort(entries_.begin() + static_cast<std::ptrdiff_t>(start_[sector]),
+                  entries_.begin() + static_cast<std::ptrdiff_t>(start_[sector + 1]),
+                  [](const Entry& a, const Entry& b) {
+                      return a.nearest != b.nearest ? a.nearest < b.nearest : a.triangle < b.triangle;
+                  });
     }
 
     void bound_blocks(std::size_t sector) {
@@ -187,11 +230,6 @@ class Sectors {
             float& most = block_slope_[block_start_[sector] + offset / block];
             most = offset % block == 0 ? entries_[i].slope : std::max(most, entries_[i].slope);
         }
-    }
-
-    bool hides(const Entry& e, glm::dvec2 u, double d, double limit) const {
-        const auto piece = cut(triangles_[e.triangle].unpacked(), u, bulge_);
-        return piece && piece->d0 < d && steepest(*piece, d, bulge_).slope > limit;
     }
 
     // From where the ground is said to be to where the pieces have it, so that it does not hide itself.
@@ -246,12 +284,19 @@ Viewshed viewshed(const StoreField& field, const Geodetic& eye, const ViewshedOp
     view.cells.assign(side * side, Viewshed::outside);
     view.heights.assign(side * side, std::numeric_limits<float>::quiet_NaN());
 
-    RegionVisitor region(frame, e, n_eye, o.radius + sight_height_max_m * o.radius / e.b);
-    GroundWalk(field.cache(), region).planet();
-    view.ground_cells = region.triangles.size();
-    for (const PackedTriangle& t : region.triangles) view.bound = std::max(view.bound, static_cast<double>(t.bound));
+    // Of the time, about so much goes into gathering.
+    constexpr double gathering = 0.3;
+    const auto tell = [&](double share) {
+        if (o.progress) o.progress(share);
+    };
+    std::atomic<std::size_t> ground_cells = 0;
+    const std::vector<PackedTriangle> triangles =
+        gather(field.cache(), {frame, e, n_eye, o.radius + sight_height_max_m * o.radius / e.b, ground_cells},
+               o.threads, [&](double share) { tell(gathering * share); });
+    view.ground_cells = triangles.size();
+    for (const PackedTriangle& t : triangles) view.bound = std::max(view.bound, static_cast<double>(t.bound));
     const auto count = static_cast<std::size_t>(std::clamp(2 * pi * o.radius / view.cell, 64.0, 20000.0));
-    const Sectors sectors(region.triangles, frame.bulge(), count, o.threads);
+    const Sectors sectors(triangles, frame.bulge(), count, o.threads);
 
     std::vector<RowCount> counts(side);
     std::atomic<std::size_t> rows = 0;
@@ -279,7 +324,7 @@ Viewshed viewshed(const StoreField& field, const Geodetic& eye, const ViewshedOp
             const double angle = distance / R;
             counted.area += view.cell * view.cell * (angle > 1e-9 ? std::sin(angle) / angle : 1);
         }
-        if (o.progress) o.progress(static_cast<double>(++rows) / static_cast<double>(side));
+        tell(gathering + (1 - gathering) * static_cast<double>(++rows) / static_cast<double>(side));
     });
     for (const RowCount& row : counts) {
         view.count += row.inside;

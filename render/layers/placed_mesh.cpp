@@ -1,5 +1,6 @@
 #include "render/layers/placed_mesh.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -55,8 +56,9 @@ std::function<NormalPosition(const glm::dvec3&)> placement(const MeshReference& 
 }  // namespace
 
 PlacedMesh::PlacedMesh(const planet::SurfaceMesh& mesh, const MeshReference& reference,
-                       std::span<const glm::vec4> colors, const planet::Geoid& geoid, const std::string& file)
-    : has_colors_(!colors.empty()), triangles_(mesh.triangles) {
+                       std::span<const glm::vec4> colors, const planet::Geoid& geoid, const std::string& file,
+                       MeshTexture texture)
+    : has_colors_(!colors.empty()), triangles_(mesh.triangles), texture_(std::move(texture)) {
     const auto place = placement(reference, file);
     // Positions about the planet's centre have ellipsoidal heights, whatever those of the source were.
     const bool ellipsoidal = reference.frame == MeshFrame::ecef || reference.frame == MeshFrame::enu ||
@@ -72,6 +74,11 @@ PlacedMesh::PlacedMesh(const planet::SurfaceMesh& mesh, const MeshReference& ref
         places_.push_back(
             {at.normal, ellipsoidal ? at.h.m - undulation : at.h.m, undulation, {color.r, color.g, color.b, color.a}});
     }
+}
+
+bool PlacedMesh::repeats_picture() const {
+    return std::ranges::any_of(texture_.uv,
+                               [](const glm::vec2& uv) { return uv != glm::clamp(uv, glm::vec2(0), glm::vec2(1)); });
 }
 
 std::vector<PlacedMesh::Vertex> PlacedMesh::vertices(double exaggeration) const {
@@ -90,7 +97,8 @@ std::vector<PlacedMesh::Vertex> PlacedMesh::vertices(double exaggeration) const 
         const double length = glm::length(normals[i]);
         list.push_back({planet::grid_from_ecef(points[i]),
                         glm::vec3(length > 0 ? normals[i] / length : places_[i].normal),
-                        static_cast<float>(places_[i].height), places_[i].color});
+                        static_cast<float>(places_[i].height), places_[i].color,
+                        texture_.uv.empty() ? glm::vec2(0) : texture_.uv[i]});
     }
     return list;
 }

@@ -10,6 +10,20 @@ namespace {
 /// What a mesh and the terrain may be off along the view, a coarse one while the eye moves, too: nearer than that it is the
 /// mesh that is seen. Not more than a part of the distance.
 constexpr double lift_m = 500;
+constexpr GLuint picture_unit = 8;  // beyond those of the terrain, which stay bound
+
+Texture texture_of(const PlacedMesh& mesh) {
+    const planet::Image& picture = mesh.picture();
+    if (picture.pixels.empty()) return {};
+    const GLenum format = picture.channels == 4 ? GL_SRGB8_ALPHA8 : GL_SRGB8;
+    Texture texture =
+        Texture::make_2d(format, picture.width, picture.height, mip_levels(picture.width, picture.height));
+    texture.upload(0, std::as_bytes(std::span(picture.pixels)));
+    texture.generate_mipmaps();
+    const GLenum wrap = mesh.repeats_picture() ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+    texture.set_sampling({.wrap_s = wrap, .wrap_t = wrap});
+    return texture;
+}
 
 }  // namespace
 
@@ -25,6 +39,7 @@ const LayerMeshPass::OnGpu& LayerMeshPass::on_gpu(const PlacedMesh& mesh, double
     kept.vertices = Buffer(bytes_of(mesh.vertices(exaggeration)));
     kept.indices = Buffer(bytes_of(mesh.triangles()));
     kept.count = static_cast<GLsizei>(3 * mesh.triangles().size());
+    if (!kept.picture) kept.picture = texture_of(mesh);
     kept.array = VertexArray::create();
     const auto grid = grid_attributes();
     const Attribute attributes[] = {grid[0],
@@ -35,7 +50,8 @@ const LayerMeshPass::OnGpu& LayerMeshPass::on_gpu(const PlacedMesh& mesh, double
                                      .components = 4,
                                      .type = GL_UNSIGNED_SHORT,
                                      .offset = offsetof(PlacedMesh::Vertex, color),
-                                     .conversion = Attribute::Conversion::normalized}};
+                                     .conversion = Attribute::Conversion::normalized},
+                                    {.location = 5, .components = 2, .offset = offsetof(PlacedMesh::Vertex, uv)}};
     kept.array.set_vertices(0, kept.vertices, sizeof(PlacedMesh::Vertex), attributes);
     kept.array.set_indices(kept.indices);
     return kept;
@@ -66,6 +82,8 @@ void LayerMeshPass::draw(std::span<const Layer* const> layers, const Camera& cam
         if (!layer->mesh) continue;
         const OnGpu& mesh = on_gpu(*layer->mesh, look.exaggeration);
         program_.set("own_colors", static_cast<GLint>(layer->style.own_colors && layer->mesh->has_colors()));
+        program_.set("textured", static_cast<GLint>(layer->style.own_colors && mesh.picture));
+        if (mesh.picture) mesh.picture.bind(picture_unit);
         program_.set("paint", glm::vec4(linear_from_srgb(layer->style.color), layer->style.opacity));
         const auto triangles = [&] {
             mesh.array.bind();

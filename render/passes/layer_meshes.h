@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 
+#include "render/gl/texture.h"
 #include "render/layers/layer.h"
 #include "render/passes/terrain.h"
 
@@ -26,6 +27,7 @@ class LayerMeshPass {
         VertexArray array;
         Buffer vertices, indices;
         GLsizei count = 0;
+        Texture picture;
     };
     const OnGpu& on_gpu(const PlacedMesh& mesh, double exaggeration);
 

@@ -7,13 +7,15 @@
 uniform vec3 eye;           ///< ecef, m, rounded
 uniform vec2 shape;         ///< (a/b)^2, the polar stretch of normals; exaggeration
 uniform float pixel_angle;  ///< rad
-uniform bool own_colors;
+uniform bool own_colors, textured;
+layout(binding = 8) uniform sampler2D picture;
 uniform vec4 paint;         ///< linear colour, opacity
 
 in vec3 view;
 in vec3 ground;
 in float orthometric;
 in vec3 own_color;
+in vec2 picture_place;
 layout(location = 0) out vec4 color;
 
 void main() {
@@ -23,6 +25,7 @@ void main() {
     s.normal = normalize(vec3(place.xy, place.z * shape.x));
     s.terrain_normal = normalize(ground);
     s.imagery = own_colors ? own_color : paint.rgb;
+    if (textured) s.imagery *= texture(picture, picture_place).rgb;
     s.night = vec3(0.0);
     s.water = 0.0;
     s.height = orthometric;

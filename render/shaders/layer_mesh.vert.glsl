@@ -5,6 +5,7 @@ layout(location = 2) in vec3 normal;   ///< ecef, unit
 layout(location = 3) in float height;  ///< m above the geoid, not exaggerated
 
 layout(location = 4) in vec4 own;      ///< linear colour
+layout(location = 5) in vec2 uv;       ///< of the picture
 
 uniform mat4 clip_from_ecef;
 uniform float lift;  ///< m: drawn as if it were nearer by that much, where depths are compared
@@ -13,6 +14,7 @@ out vec3 view;
 out vec3 ground;
 out float orthometric;
 out vec3 own_color;
+out vec2 picture_place;
 invariant gl_Position;
 
 void main() {
@@ -23,4 +25,5 @@ void main() {
     ground = normal;
     orthometric = height;
     own_color = own.rgb;
+    picture_place = uv;
 }

@@ -154,6 +154,34 @@ TEST(ImageIo, AnUnfinishedPictureLeavesTheOldOne) {
     EXPECT_EQ(files_in(folder), 1u);
 }
 
+TEST(ImageIo, ReadsTheBytesOfAFile) {
+    const TemporaryFolder folder;
+    const Image image = pattern<std::uint8_t>(64, 48, 3);
+    for (const char* name : {"a.png", "a.tif"}) {
+        write_image(folder / name, image);
+        EXPECT_EQ(read_image_bytes(bytes_of(folder / name), "mesh.glb").pixels, image.pixels) << name;
+    }
+    const std::string whole = bytes_of(folder / "a.png");
+    for (const std::string& bad : {std::string(), std::string("GIF"), whole.substr(0, whole.size() / 2)})
+        EXPECT_ERROR(error_of(Fault::bad_data, [&] { read_image_bytes(bad, "mesh.glb"); }),
+                     "mesh.glb: is no picture that can be read");
+}
+
+// Offsets of 32 bits end at 4 GiB: what may become larger says from its first bytes on that it has 64.
+TEST(ImageIo, ATiffThatMayPassFourGigabytesIsBig) {
+    const auto version = [](int width, int height) {
+        const TemporaryFolder folder;
+        const ImageWriter writer(folder / "a.tif", width, height, 3, SampleType::uint8);
+        const auto entry = *std::filesystem::directory_iterator(folder.path());
+        return static_cast<int>(bytes_of(entry.path().string()).at(2));
+    };
+    constexpr int classic = 42, big = 43;
+    EXPECT_EQ(version(40000, 20000), classic);
+    EXPECT_EQ(version(60000, 30000), big);
+    EXPECT_EQ(version(36000, 36000), classic);
+    EXPECT_EQ(version(36100, 36100), big);
+}
+
 TEST(ImageIo, EachBadFileGetsItsOwnLine) {
     const TemporaryFolder folder;
     const auto read = [&](const std::string& path) { return error_of(Fault::bad_data, [&] { read_image(path); }); };

@@ -1,6 +1,8 @@
 // octaglobe fly: a flight as a video, or as a folder of pictures.
 
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
 
 #include "planet/error.h"
@@ -19,7 +21,17 @@ struct Options {
     std::filesystem::path plan;
     std::string json;
     bool time_given = false;
+    bool resume = false;
 };
+
+/// What frames depend on: the words of the command but for --resume, and the file that is flown along.
+std::string flight_text(const std::filesystem::path& plan) {
+    std::ifstream words("/proc/self/cmdline", std::ios::binary), file(plan, std::ios::binary);
+    std::string text;
+    for (std::string word; std::getline(words, word, '\0');)
+        if (word != "--resume") text += word + '\n';
+    return text + std::string(std::istreambuf_iterator<char>(file), {});
+}
 
 std::pair<long, long> frames_from_text(std::string_view where, const std::string& text) {
     const auto colon = text.find(':');
@@ -79,6 +91,7 @@ void fill(Report& report, const FilmOptions& options, const FilmReport& film) {
     report.set("first_frame", film.first_frame);
     report.set("last_frame", film.last_frame);
     report.set("frames_of_flight", film.frames_of_flight);
+    report.set("frames_drawn", film.drawn_frames);
     report.set("triangles_max", film.triangles_max);
     report_tiles(report, film.tiles);
     report.set("deviation_max_m", film.deviation_max_m);
@@ -99,7 +112,7 @@ void fly(Options& o) {
     if (o.time_given) usual.time = render.time;
     const FlightPlan plan = read_flight_plan(o.plan, usual, o.line);
     Report report("fly", o.json);
-    const auto output = make_frame_output(render.output, render.size, o.film.fps);
+    const auto output = make_frame_output(render.output, render.size, o.film.fps, {o.resume, flight_text(o.plan)});
     FilmReport film;
     {
         Progress progress;
@@ -107,6 +120,7 @@ void fly(Options& o) {
         film = draw_film(o.film, plan, *output);
         output->finish();
     }
+    warn_of_layers(film.layers);
     for (const auto& line : film.damage)
         std::cerr << "octaglobe: warning: " << line << "; a coarser one stands in for it\n";
     fill(report, o.film, film);
@@ -135,6 +149,8 @@ void add_fly(CLI::App& program) {
               [options](std::string_view, const std::string& text) { options->plan = text; })
         ->required();
     add_film_options(*command, *options);
+    command->add_flag("--resume", options->resume,
+                      "Goes on with the frames of the same command, where it was killed; for a folder of PNGs");
     add_line_options(*command, *options);
     add_lens_options(*command, options->film.render);
     add_look_options(*command, options->film.render);

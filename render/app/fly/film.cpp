@@ -61,8 +61,9 @@ class Film {
     }
 
     FilmReport draw() {
-        begin_air(report_.first_frame);
-        for (long i = report_.first_frame; i <= report_.last_frame; ++i) {
+        begin_air(next_to_draw(report_.first_frame));
+        for (long i = next_to_draw(report_.first_frame); i <= report_.last_frame; i = next_to_draw(i + 1)) {
+            ++report_.drawn_frames;
             draw_frame(i);
             render_.progress("frames", static_cast<double>(i + 1 - report_.first_frame) /
                                            static_cast<double>(report_.last_frame + 1 - report_.first_frame));
@@ -87,6 +88,12 @@ class Film {
                                 std::to_string(options_.frames->second) + " is not in the flight",
                                 "0 to " + std::to_string(report_.last_frame));
         std::tie(report_.first_frame, report_.last_frame) = *options_.frames;
+    }
+
+    /// That one or the next that is not there yet; the one behind the last where all are.
+    long next_to_draw(long frame) const {
+        while (frame <= report_.last_frame && output_.has(frame)) ++frame;
+        return frame;
     }
 
     double seconds_of(long frame) const { return static_cast<double>(frame) / options_.fps; }
@@ -143,7 +150,7 @@ class Film {
         }
         settle(seconds, camera);
         looks_.set_sky(tables_.get(), air_.get(), view.time);
-        begin_air(frame + 1);
+        begin_air(next_to_draw(frame + 1));
         std::vector<std::uint8_t> rgba = steps_.time("draw", [&] {
             const int samples = looks_.samples(render_, camera, context_.limits().samples);
             if (!target_ || target_.samples() != samples)

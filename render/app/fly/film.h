@@ -24,6 +24,7 @@ struct FilmOptions {
 struct FilmReport {
     double flight_seconds = 0;
     long first_frame = 0, last_frame = 0, frames_of_flight = 0;
+    long drawn_frames = 0;  ///< fewer than these where others were there from before
     std::size_t triangles_max = 0;
     double deviation_max_m = 0;      ///< certified, of all frames
     double pixel_deviation_max = 0;  ///< the same

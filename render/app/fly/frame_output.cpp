@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <optional>
+#include <set>
 
 #include "planet/elevation/image_io.h"
 #include "planet/error.h"
@@ -14,9 +19,53 @@ namespace {
 
 constexpr const char* accepted = "a folder's name without ending, for PNGs; or .mp4, .webm, .mkv, .mov";
 
+/// In the temporary folder only, beside the frames.
+constexpr const char* flight_file = "flight";
+
+std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The number of a frame by its name; nothing for other files, and for pictures without an end.
+std::optional<long> whole_frame(const std::filesystem::path& file) {
+    long number = 0;
+    int length = 0;
+    const std::string name = file.filename();
+    if (std::sscanf(name.c_str(), "frame_%6ld.png%n", &number, &length) != 1 || length != static_cast<int>(name.size()))
+        return {};
+    constexpr std::string_view end = "IEND\xae\x42\x60\x82";
+    if (!bytes_of(file).ends_with(end)) return {};
+    return number;
+}
+
+std::optional<std::filesystem::path> frames_to_go_on_with(const std::filesystem::path& target,
+                                                          const FlightResumption& resumption) {
+    const auto begun = OutputFolder::left_behind(target);
+    if (!begun) return {};
+    if (!resumption.wanted) {
+        std::cerr << "octaglobe: note: " << begun->native()
+                  << " holds frames of a flight that was killed; --resume goes on with them\n";
+        return {};
+    }
+    if (bytes_of(*begun / flight_file) != resumption.flight)
+        throw planet::Error(planet::Fault::bad_usage, "--resume",
+                            shown(begun->native()) + " holds frames of another flight, or of other options",
+                            "the command that was killed, with --resume; or that folder removed");
+    return begun;
+}
+
 class FolderOutput : public FrameOutput {
   public:
-    FolderOutput(const std::filesystem::path& target, PictureSize size) : folder_("--output", target), size_(size) {}
+    FolderOutput(const std::filesystem::path& target, PictureSize size, const FlightResumption& resumption)
+        : folder_("--output", target, frames_to_go_on_with(target, resumption)), size_(size) {
+        for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+            if (const auto number = whole_frame(entry.path()))
+                there_.insert(*number);
+            else
+                std::filesystem::remove(entry.path());
+        std::ofstream(folder_.path() / flight_file, std::ios::binary) << resumption.flight;
+    }
 
     void write(long number, std::span<const std::uint8_t> rgb) override {
         char name[32];
@@ -26,11 +75,16 @@ class FolderOutput : public FrameOutput {
         writer.write_rows(rgb.data(), size_.height);
         writer.finish();
     }
-    void finish() override { folder_.commit(); }
+    bool has(long number) const override { return there_.contains(number); }
+    void finish() override {
+        std::filesystem::remove(folder_.path() / flight_file);
+        folder_.commit();
+    }
 
   private:
     OutputFolder folder_;
     PictureSize size_;
+    std::set<long> there_;
 };
 
 }  // namespace
@@ -44,9 +98,12 @@ bool is_video(const std::filesystem::path& target) {
     return false;
 }
 
-std::unique_ptr<FrameOutput> make_frame_output(const std::filesystem::path& target, PictureSize size, double fps) {
-    if (is_video(target)) return std::make_unique<VideoEncoder>(target, size, fps);
-    return std::make_unique<FolderOutput>(target, size);
+std::unique_ptr<FrameOutput> make_frame_output(const std::filesystem::path& target, PictureSize size, double fps,
+                                               const FlightResumption& resumption) {
+    if (!is_video(target)) return std::make_unique<FolderOutput>(target, size, resumption);
+    if (resumption.wanted)
+        throw planet::Error(planet::Fault::bad_usage, "--resume", "a video cannot be gone on with", accepted);
+    return std::make_unique<VideoEncoder>(target, size, fps);
 }
 
 }  // namespace render

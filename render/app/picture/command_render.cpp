@@ -93,6 +93,7 @@ void add_render(CLI::App& program) {
         // Refuses an output that cannot be written before the work, not after it.
         { const OutputFile writable("--output", render.output); }
         const PictureReport picture = draw_picture(render);
+        warn_of_layers(picture.layers);
         for (const auto& line : picture.damage)
             std::cerr << "octaglobe: warning: " << line << "; a coarser one stands in for it\n";
         fill(report, render, picture);

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "planet/elevation/features.h"
+#include "planet/elevation/image_io.h"
+#include "planet/error.h"
 #include "planet/exporters/mesh_file.h"
 #include "planet/geodesy/geoid.h"
 #include "render/app/data_path.h"
@@ -28,6 +30,32 @@ LayerStyle style_of(const LayerOptions& options) {
             .own_colors = !options.color};
 }
 
+/// The picture of a mesh, if it has one that can be drawn; else a line says why not.
+MeshTexture texture_of(planet::MeshLooks& looks, const std::string& file, std::string& warning) {
+    if (looks.picture.empty()) return {};
+    if (looks.uv.empty()) {
+        warning = file + ": its picture is not drawn, for not all vertices say where it lies";
+        return {};
+    }
+    try {
+        constexpr int largest_side = 8192;  // of a texture, anywhere
+        MeshTexture texture{planet::read_image_bytes(looks.picture, file, {.max_width = largest_side}),
+                            std::move(looks.uv)};
+        if (texture.picture.height <= largest_side) return texture;
+        warning = file + ": its picture is not drawn, for it is more than 8192 pixels high";
+    } catch (const planet::Error& error) {
+        warning = error.what();
+    }
+    return {};
+}
+
+/// A material's factor for all vertices, where it is of use: where there is a picture, too.
+void multiply_colors(planet::MeshLooks& looks, std::size_t vertices) {
+    if (looks.picture.empty()) return;
+    if (looks.colors.empty()) looks.colors.assign(vertices, glm::vec4(1));
+    for (glm::vec4& color : looks.colors) color *= looks.base_color;
+}
+
 LoadedLayer read_mesh_layer(const std::filesystem::path& file) {
     planet::MeshReference reference;
     planet::MeshLooks looks;
@@ -36,7 +64,10 @@ LoadedLayer read_mesh_layer(const std::filesystem::path& file) {
     if (planet::mesh_format(file.native()) != planet::MeshFormat::glb)
         for (glm::vec4& color : looks.colors) color = glm::vec4(linear_from_srgb(glm::vec3(color)), color.a);
     LoadedLayer loaded{file.stem().native(), {}, mesh.triangles.size(), mesh.vertices.size()};
-    loaded.layer.mesh.emplace(mesh, reference, looks.colors, planet::Geoid(data_file("egm96-15.pgm")), file.native());
+    multiply_colors(looks, mesh.vertices.size());
+    MeshTexture texture = texture_of(looks, file.native(), loaded.warning);
+    loaded.layer.mesh.emplace(mesh, reference, looks.colors, planet::Geoid(data_file("egm96-15.pgm")), file.native(),
+                              std::move(texture));
     return loaded;
 }
 
@@ -96,7 +127,7 @@ bool LayerData::needs_stencil() const {
 
 std::vector<LayerReport> LayerData::report() const {
     std::vector<LayerReport> list;
-    for (const LoadedLayer& layer : own_) list.push_back({layer.name, layer.features, layer.vertices});
+    for (const LoadedLayer& layer : own_) list.push_back({layer.name, layer.features, layer.vertices, layer.warning});
     return list;
 }
 

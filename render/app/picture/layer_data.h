@@ -14,6 +14,7 @@ struct LoadedLayer {
     std::string name;  ///< of the file, without its folder and ending
     Layer layer;
     std::size_t features = 0, vertices = 0;  ///< in the file; of a mesh its triangles are features
+    std::string warning{};                   ///< what of it cannot be drawn; empty: nothing
 };
 
 /// What a picture's options name: shipped coastlines and borders, and the user's layers.

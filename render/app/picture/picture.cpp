@@ -32,6 +32,8 @@ using planet::wgs84;
 /// Nothing larger is drawn at once. Parts of larger pictures have a margin that is not kept: a star whose middle is
 /// outside is not drawn, but its light would reach inside.
 constexpr int largest_drawn = 2048, part_margin = 8, least_part = 64;
+/// Two bands, one part high, are in memory: 120 MB each if they have so many pixels. Flatter parts than half cost time.
+constexpr int band_pixels = 40'000'000, least_part_height = (largest_drawn - 2 * part_margin) / 2;
 
 PicturePart grown(const PicturePart& part, int margin) {
     return {part.x - margin, part.y - margin, part.width + 2 * margin, part.height + 2 * margin};
@@ -51,10 +53,11 @@ class Parts {
     Parts(const Camera& camera, const PictureCrop& wanted)
         : wanted_{wanted.x, wanted.y, wanted.width, wanted.height},
           single_(camera.width <= largest_drawn && camera.height <= largest_drawn),
-          side_(single_ ? largest_drawn : largest_drawn - 2 * part_margin) {
-        for (int y = 0; y < camera.height; y += side_)
-            for (int x = 0; x < camera.width; x += side_)
-                add({x, y, std::min(side_, camera.width - x), std::min(side_, camera.height - y)});
+          width_(single_ ? largest_drawn : largest_drawn - 2 * part_margin),
+          height_(std::clamp(band_pixels / camera.width, std::min(least_part_height, width_), width_)) {
+        for (int y = 0; y < camera.height; y += height_)
+            for (int x = 0; x < camera.width; x += width_)
+                add({x, y, std::min(width_, camera.width - x), std::min(height_, camera.height - y)});
         std::ranges::reverse(rest_);
     }
 
@@ -81,7 +84,7 @@ class Parts {
     PicturePart kept(const PicturePart& part) const { return common(part, wanted_); }
     /// The rows of what is wanted that come with a part.
     PicturePart band(const PicturePart& part) const {
-        return common({wanted_.x, part.y / side_ * side_, wanted_.width, side_}, wanted_);
+        return common({wanted_.x, part.y / height_ * height_, wanted_.width, height_}, wanted_);
     }
 
   private:
@@ -92,7 +95,7 @@ class Parts {
 
     PicturePart wanted_;
     bool single_;
-    int side_;
+    int width_, height_;  ///< of parts
     std::vector<PicturePart> rest_;
 };
 

@@ -143,6 +143,10 @@ void add_query_viewshed(CLI::App& query) {
                   options->view.cell = parse_distance(where, text, {0.1, planet::viewshed_radius_max_m});
               });
     add_sight_options(*command, options->view);
+    add_value(*command, "--threads", "COUNT", "1 to 256; 0: as many as there are processors [0]",
+              [options](std::string_view where, const std::string& text) {
+                  options->view.threads = static_cast<unsigned>(parse_whole(where, text, 0, 256));
+              });
     add_value(*command, "-o,--output", "FILE",
               "A raster in an azimuthal equidistant projection, .tif; outlines, .geojson; a picture, .png",
               [options](std::string_view where, const std::string& text) {

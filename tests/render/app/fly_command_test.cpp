@@ -6,6 +6,7 @@
 #include <fstream>
 #include <thread>
 
+#include "render/app/output_folder.h"
 #include "tests/render/app/can_draw.h"
 #include "tests/render/app/program_process.h"
 
@@ -54,6 +55,13 @@ class Fly : public testing::Test {
         char name[64];
         std::snprintf(name, sizeof name, "/frame_%06d.png", number);
         return content(folder_.path() / (folder + name));
+    }
+
+    /// Whether so many frames of a flight to "frames" are written.
+    bool begun(int frames) const {
+        for (const std::string& name : folder_.names())
+            if (name.ends_with(".part") && !frame(name, frames - 1).empty()) return true;
+        return false;
     }
 
     ScratchFolder folder_;
@@ -129,6 +137,26 @@ TEST_F(Fly, AStoppedFlightLeavesNothing) {
         EXPECT_EQ(flying.wait().status, 128 + SIGINT);
         EXPECT_EQ(folder_.names(), std::vector<std::string>{"path.json"}) << output;
     }
+}
+
+TEST_F(Fly, AKilledFlightGoesOn) {
+    ASSERT_EQ(fly("-o whole").status, 0);
+    const std::string line = "fly path.json --fps 5 --size 96x54 -o frames";
+    Process flying(folder_.path(), words(line));
+    for (int i = 0; i < 2000 && !begun(2); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ::kill(flying.id(), SIGKILL);
+    ASSERT_EQ(flying.wait().status, 128 + SIGKILL);
+    const auto folder = OutputFolder::left_behind(folder_ / "frames");
+    ASSERT_TRUE(folder);
+    std::filesystem::resize_file(*folder / "frame_000000.png", 300);
+    expect_one_line(run(folder_.path(), words(line + " --resume --fov 30")), 2, "another flight");
+    expect_one_line(fly("-o a.mp4 --resume"), 2, "cannot be gone on with");
+    const Outcome resumed = run(folder_.path(), words(line + " --resume"));
+    ASSERT_EQ(resumed.status, 0) << resumed.err;
+    for (int i = 0; i < 14; ++i) EXPECT_TRUE(frame("frames", i) == frame("whole", i)) << i;
+    EXPECT_EQ(folder_.names(), (std::vector<std::string>{"frames", "path.json", "whole"}));
+    const std::filesystem::directory_iterator files(folder_ / "frames");
+    EXPECT_EQ(std::distance(begin(files), end(files)), 14);
 }
 
 TEST_F(Fly, RefusesOutputsItCannotMake) {

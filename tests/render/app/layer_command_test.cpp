@@ -117,6 +117,37 @@ TEST_F(LayerCommand, AMeshStandsInItsPlace) {
     }
 }
 
+// Red in the north, blue in the south.
+TEST_F(LayerCommand, AMeshHasItsPictureOnIt) {
+    planet::Image photo{64, 64, 3, {}};
+    for (int i = 0; i < 64 * 64; ++i)
+        for (const int byte : i < 64 * 32 ? std::array{250, 10, 10} : std::array{10, 10, 250})
+            photo.pixels.push_back(static_cast<std::uint8_t>(byte));
+    planet::write_image(folder_ / "photo.png", photo);
+    const std::string dem = OCTAGLOBE_SOURCE_DIR "/data/sangre_de_cristo.tif";
+    ASSERT_EQ(run(folder_.path(), {"tin", dem, "--max-deviation", "80", "--drape", "photo.png", "-o", "t.glb"}).status,
+              0);
+    const std::string view = "--at 37.5,-105 --range 60km --time 2026-06-21T18:00:00Z --layer ";
+    const planet::Image drawn = picture(view + "t.glb");
+    const auto north = pixel(drawn, 100, 40), south = pixel(drawn, 100, 160);
+    EXPECT_GT(north[0], north[2] + 80);
+    EXPECT_GT(south[2], south[0] + 80);
+    const auto green = pixel(picture(view + "t.glb,color=#00ff00"), 100, 40);
+    EXPECT_GT(green[1], green[0] + 80);
+
+    std::string bytes = content(folder_ / "t.glb");
+    const std::size_t start = bytes.rfind("\x89PNG");
+    ASSERT_NE(start, bytes.npos);
+    bytes.replace(start, 4, "none");
+    write("broken.glb", bytes);
+    const Outcome outcome = render(view + "broken.glb -o broken.png");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err.rfind("octaglobe: warning: broken.glb: is no picture", 0), 0u) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    const auto plain = pixel(planet::read_image(folder_ / "broken.png"), 100, 40);
+    EXPECT_LT(std::abs(plain[0] - plain[2]), 30);
+}
+
 TEST_F(LayerCommand, LabelsAreDrawn) {
     write(
         "peak.geojson",

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <ostream>
-#include <thread>
 
 #include "planet/elevation/image_io.h"
 #include "tests/render/app/can_draw.h"
@@ -80,21 +79,6 @@ TEST(Crop, RefusesWhatIsNotInThePicture) {
         EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     }
     EXPECT_TRUE(folder.names().empty());
-}
-
-TEST(Posters, AStoppedOneLeavesNothing) {
-    if (!can_draw()) GTEST_SKIP() << "no usable OpenGL";
-    for (const std::string name : {"p.tif", "p.png"}) {
-        const ScratchFolder folder;
-        Process drawing(folder.path(), words("render --size 12000x12000 -o " + name));
-        for (int i = 0; i < 1000 && folder.names().empty(); ++i)
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        // The image library makes the file and only then tells its name.
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));
-        ::kill(drawing.id(), SIGTERM);
-        EXPECT_EQ(drawing.wait().status, 128 + SIGTERM);
-        EXPECT_TRUE(folder.names().empty()) << folder.names().front();
-    }
 }
 
 }  // namespace
