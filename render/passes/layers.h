@@ -26,6 +26,9 @@ class LayerPass {
         double pixel_scale = 1;  ///< of widths: below 1 where a picture is drawn smaller than it is shown
         DrapeGround& ground;
         const Framebuffer& target;  ///< bound, with the terrain's depth, and a stencil
+        /// Of the target before meshes were drawn; null: none was.
+        const Texture* terrain_depth = nullptr;
+        double mesh_lift_m = 0;  ///< what such a mesh may be in front of a line on the terrain and not hide it
     };
     /// Leaves the target's alpha at 1.
     void draw(std::span<const Layer* const> layers, const View& view);

@@ -75,6 +75,8 @@ class GlobeLooks {
 
   private:
     TerrainLook look_of(const Frame& frame) const;
+    void draw_layers(const Frame& frame, const Framebuffer& target);
+    const Texture& keep_terrain_depth(const Framebuffer& target);
 
     Texture day_, night_, relief_;
     double texel_m_ = 0;
@@ -83,6 +85,7 @@ class GlobeLooks {
     std::optional<SkyPass> sky_;
     std::optional<OverlayPass> overlay_;
     std::vector<const Layer*> layers_;
+    Texture terrain_depth_;  ///< before meshes were drawn, if lines are drawn after them
     bool stencil_ = false, graticule_ = false;
     Layer graticule_names_;                   ///< of the view that was drawn last
     std::optional<LayerPass> layer_pass_;     // once there are layers
