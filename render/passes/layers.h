@@ -14,7 +14,7 @@ namespace render {
 
 class LayerPass {
   public:
-    /// Farther from a pixel no depth is asked for: half of the largest mark, with its rim.
+    /// Farther from a pixel no depth is asked for, at a pixel_scale of 1: half of the largest mark, with its rim.
     static constexpr int reach_px = 40;
 
     /// With the context that is current.
@@ -23,7 +23,8 @@ class LayerPass {
     struct View {
         const Camera& camera;  ///< of the whole picture
         PicturePart part;
-        double pixel_scale = 1;  ///< of widths: below 1 where a picture is drawn smaller than it is shown
+        double pixel_scale = 1;  ///< of widths: below 1 where a picture is drawn smaller than it is shown, above where
+                                 ///< the pixels of a display are small
         DrapeGround& ground;
         const Framebuffer& target;  ///< bound, with the terrain's depth, and a stencil
         /// Of the target before meshes were drawn; null: none was.

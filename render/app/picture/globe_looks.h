@@ -56,7 +56,7 @@ class GlobeLooks {
         DrapeGround& ground;     ///< what layers lie on
         double morph_reach = 0;  ///< see TerrainLook
         bool relief = false;     ///< heights as colours instead of the imagery
-        double pixel_scale = 1;  ///< of widths: below 1 where the picture is shown larger
+        double pixel_scale = 1;  ///< of widths: that of the options, times what is drawn of the pixels that are shown
         bool labels = true;
     };
     /// Draws the meshes of terrain() and overlay(), and layers, into what is bound: the target.
@@ -68,7 +68,7 @@ class GlobeLooks {
     void draw_opaque(const Frame& frame);
     void draw_blended(const Frame& frame, const Framebuffer& target);
     /// Names of layers, and of the graticule's lines, into what is bound.
-    void draw_labels(const Camera& camera, const PicturePart& part, const DrapeGround& ground, double pixel_scale = 1);
+    void draw_labels(const Camera& camera, const PicturePart& part, const DrapeGround& ground, double pixel_scale);
 
     TerrainPass& terrain() { return *terrain_; }
     OverlayPass& overlay() { return *overlay_; }
