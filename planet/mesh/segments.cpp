@@ -25,13 +25,14 @@ PlacedCell find_split_cell(const TileSource& tiles, LocationCode cell) {
     return {tile, static_cast<unsigned>(cell.bits() & ((1u << below) - 1)) | 1u << below};
 }
 
-/// Sorts ranges and joins those that touch.
+/// Sorts ranges and joins those that touch or overlap.
 void join(std::vector<Range>& ranges) {
     std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
     std::size_t kept = 0;
     for (const Range& r : ranges) {
-        if (kept > 0 && ranges[kept - 1].first + ranges[kept - 1].count == r.first)
-            ranges[kept - 1].count += r.count;
+        Range* const last = kept > 0 ? &ranges[kept - 1] : nullptr;
+        if (last && r.first <= last->first + last->count)
+            last->count = std::max(last->count, r.first + r.count - last->first);
         else
             ranges[kept++] = r;
     }
@@ -121,20 +122,40 @@ void Segments::update(const TileSource& tiles, const SegmentView& view, int thre
     tiles_from_ = &tiles;
     view_ = view;
     if (at_rest) return;
-    tree_.update(tiles, view);
-    release_dropped();
-    std::vector<Job> jobs = stale_blocks();
-    build_all(tiles, jobs, static_cast<std::size_t>(std::max(threads, 1)));
-    place(jobs, static_cast<std::size_t>(std::max(threads, 1)));
+    const auto workers = static_cast<std::size_t>(std::max(threads, 1));
+    write_fresh(workers);
+    make(tiles, view, workers);
+    write_fresh(workers);
+    join(changed_vertices_);
+    join(changed_indices_);
     list();
     shed_unseen();
     listed_ = true;
+}
+
+void Segments::prepare(const TileSource& tiles, const SegmentView& view, int threads) {
+    if (tiles_from_ != &tiles || !view.same_but_for_eye_and_culling(view_) || !fresh_.empty()) return;
+    listed_ = false;
+    make(tiles, view, static_cast<std::size_t>(std::max(threads, 1)));
+}
+
+/// Brings everything up to date but what can be asked of segments: arrays, lists and sums.
+void Segments::make(const TileSource& tiles, const SegmentView& view, std::size_t threads) {
+    if (made_ && view.test.eye == made_for_.test.eye && view.culling == made_for_.culling) return;
+    made_for_ = view;
+    tree_.update(tiles, view);
+    release_dropped();
+    std::vector<Job> jobs = stale_blocks();
+    build_all(tiles, jobs, threads);
+    for (const Job& job : jobs) place(job);
+    made_ = true;
 }
 
 void Segments::invalidate(std::span<const LocationCode> tile_roots) {
     tree_.invalidate(tile_roots);
     release_dropped();
     listed_ = listed_ && tile_roots.empty();
+    made_ = made_ && tile_roots.empty();
 }
 
 void Segments::clear() {
@@ -145,7 +166,8 @@ void Segments::clear() {
         free_blocks_.push_back(static_cast<std::uint32_t>(i));
     }
     segments_.clear();
-    listed_ = false;
+    fresh_.clear();
+    listed_ = made_ = false;
     vertex_places_.clear();
     index_places_.clear();
     total_leaves_ = 0;
@@ -179,7 +201,7 @@ void Segments::build_all(const TileSource& tiles, std::span<Job> jobs, std::size
     std::atomic<std::size_t> next = 0;
     parallel_for(workers, static_cast<unsigned>(workers), [&](std::size_t w) {
         Worker& worker = *workers_[w];
-        worker.builder.begin(tiles, view_);
+        worker.builder.begin(tiles, made_for_);
         worker.parts.clear();
         for (std::size_t first; (first = next.fetch_add(run, std::memory_order_relaxed)) < jobs.size();)
             for (Job& job : jobs.subspan(first, std::min(run, jobs.size() - first))) build(tiles, job, worker);
@@ -200,7 +222,7 @@ void Segments::build(const TileSource& tiles, Job& job, Worker& worker) const {
         while (parts.size() > job.first_part + 1) {
             Part &a = parts[parts.size() - 2], &b = parts.back();
             if (a.cell == half || a.cell.sibling() != b.cell ||
-                a.leaves + b.leaves > static_cast<std::uint32_t>(view_.segment_leaves))
+                a.leaves + b.leaves > static_cast<std::uint32_t>(made_for_.segment_leaves))
                 return;
             a = {.cell = a.cell.parent(), .leaves = a.leaves + b.leaves, .piece = Part::none, .is_new = true};
             parts.pop_back();
@@ -234,19 +256,29 @@ void Segments::build(const TileSource& tiles, Job& job, Worker& worker) const {
     }
 }
 
-void Segments::place(std::span<Job> jobs, std::size_t threads) {
-    for (const Job& job : jobs) place(job);
-    join(changed_vertices_);
-    join(changed_indices_);
+void Segments::write_fresh(std::size_t threads) {
     if (vertices_.size() == 0) reserve();
-    vertices_.resize(vertex_places_.size());
-    if (view_.morph) morphs_.resize(vertex_places_.size());
-    indices_.resize(index_places_.size());
-    leaf_levels_.resize(index_places_.size());
+    // What has been written since the last view is listed as changed, even if its place is no longer in use.
+    const bool first = built_ == 0;
+    auto vertices = std::max<std::size_t>(vertex_places_.size(), first ? 0 : vertices_.size()),
+         indices = std::max<std::size_t>(index_places_.size(), first ? 0 : indices_.size());
+    for (const Fresh& f : fresh_) {
+        const Segment& s = f.segment;
+        changed_vertices_.push_back({s.first_vertex, s.vertex_count});
+        changed_indices_.push_back({s.first_index, s.index_count});
+        vertices = std::max<std::size_t>(vertices, s.first_vertex + s.vertex_count);
+        indices = std::max<std::size_t>(indices, s.first_index + s.index_count);
+    }
+    vertices_.resize(vertices);
+    if (view_.morph) morphs_.resize(vertices);
+    indices_.resize(indices);
+    leaf_levels_.resize(indices);
     constexpr std::size_t run = 64;
-    parallel_for((jobs.size() + run - 1) / run, static_cast<unsigned>(threads), [&](std::size_t r) {
-        for (const Job& job : jobs.subspan(r * run, std::min(run, jobs.size() - r * run))) copy_arrays(job);
+    parallel_for((fresh_.size() + run - 1) / run, static_cast<unsigned>(threads), [&](std::size_t r) {
+        for (std::size_t k = r * run; k < std::min(fresh_.size(), (r + 1) * run); ++k) write(fresh_[k]);
     });
+    built_ += fresh_.size();
+    fresh_.clear();
 }
 
 void Segments::reserve() {
@@ -257,18 +289,13 @@ void Segments::reserve() {
     leaf_levels_.reserve_more(2 * usual_vertices);
 }
 
-void Segments::copy_arrays(const Job& job) {
-    const SegmentBuilder& from = job.worker->builder;
-    const std::span<const Part> parts = job.parts();
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        if (!parts[k].is_new) continue;
-        const BuiltSegment& b = parts[k].built;
-        const Segment& s = blocks_[job.block].pieces[k].segment;
-        copy(vertices_, s.first_vertex, from.vertices(), b.first_vertex, b.vertices);
-        if (view_.morph) copy(morphs_, s.first_vertex, from.morphs(), b.first_vertex, b.vertices);
-        copy(indices_, s.first_index, from.indices(), b.first_index, b.indices);
-        copy(leaf_levels_, s.first_leaf, from.leaf_levels(), b.first_leaf, b.leaves);
-    }
+void Segments::write(const Fresh& fresh) {
+    const SegmentBuilder& from = *fresh.from;
+    const Segment& s = fresh.segment;
+    copy(vertices_, s.first_vertex, from.vertices(), fresh.from_vertex, s.vertex_count);
+    if (view_.morph) copy(morphs_, s.first_vertex, from.morphs(), fresh.from_vertex, s.vertex_count);
+    copy(indices_, s.first_index, from.indices(), fresh.from_index, s.index_count);
+    copy(leaf_levels_, s.first_leaf, from.leaf_levels(), fresh.from_leaf, s.leaves);
 }
 
 /// Gives places to the new parts of a block.
@@ -290,7 +317,10 @@ void Segments::place(const Job& job) {
             release_until(part.piece);
             named = &old[next++];
         }
-        const Piece& piece = block.pieces.emplace_back(part.is_new ? new_piece(part.built, named) : *named);
+        const Piece& piece = block.pieces.emplace_back(part.is_new ? place(part.built, named) : *named);
+        if (part.is_new)
+            fresh_.push_back({&job.worker->builder, part.built.first_vertex, part.built.first_index,
+                              part.built.first_leaf, piece.segment});
         block.expires = std::min(block.expires, piece.expires);
         block.least_reach = std::min(block.least_reach, piece.least_reach);
         block.odometer = std::min(block.odometer, piece.odometer);
@@ -301,7 +331,7 @@ void Segments::place(const Job& job) {
 
 // What is built again mostly has as many vertices as before, or nearly. What outgrew its place is likely to do so again.
 // @param old of the same cell, or nullptr
-Segments::Piece Segments::new_piece(const BuiltSegment& b, const Piece* old) {
+Segments::Piece Segments::place(const BuiltSegment& b, const Piece* old) {
     Range vertices, indices;
     if (old && b.vertices <= old->vertex_room && b.indices <= old->index_room) {
         vertices = {old->segment.first_vertex, old->vertex_room};
@@ -313,10 +343,7 @@ Segments::Piece Segments::new_piece(const BuiltSegment& b, const Piece* old) {
         vertices = vertex_places_.allocate(room(b.vertices));
         indices = index_places_.allocate(room(b.indices));
     }
-    changed_vertices_.push_back({vertices.first, b.vertices});
-    changed_indices_.push_back({indices.first, b.indices});
     total_leaves_ += b.leaves;
-    ++built_;
     return {.segment = {.root = b.cell,
                         .patch = b.patch,
                         .first_vertex = vertices.first,

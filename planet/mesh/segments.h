@@ -45,8 +45,13 @@ class Segments {
     /// everything.
     void update(const TileSource& tiles, const SegmentView& view, int threads = 1);
 
+    /// Does ahead what it can of the next update(), which for this view or one nearby is then short. Nothing that can be
+    /// asked of segments changes: meanwhile other threads may go on reading them. Does nothing where the update would
+    /// build everything.
+    void prepare(const TileSource& tiles, const SegmentView& view, int threads = 1);
+
     /// To be called when tiles of the source came, went or changed: segments above and below these cells are built anew.
-    /// Until the next update no tile is looked at.
+    /// Until the next update or prepare no tile is looked at. Nothing that can be asked of segments changes.
     void invalidate(std::span<const LocationCode> tile_roots);
 
     /// Those in view.
@@ -121,31 +126,42 @@ class Segments {
     struct Part;
     struct Job;
     struct Worker;
+    /// A segment that was built and has a place, where it is still to be written.
+    struct Fresh {
+        const SegmentBuilder* from;
+        std::uint32_t from_vertex, from_index, from_leaf;
+        Segment segment;
+    };
 
     void clear();
+    void make(const TileSource& tiles, const SegmentView& view, std::size_t threads);
+    void write_fresh(std::size_t threads);
     std::vector<Job> stale_blocks();
     void build_all(const TileSource& tiles, std::span<Job> jobs, std::size_t threads);
     void build(const TileSource& tiles, Job& job, Worker& worker) const;
-    void place(std::span<Job> jobs, std::size_t threads);
     void place(const Job& job);
+    Piece place(const BuiltSegment& b, const Piece* old);
     void reserve();
-    void copy_arrays(const Job& job);
+    void write(const Fresh& fresh);
     double ratio_since(double odometer, double ratio_max, double least_reach) const;
-    Piece new_piece(const BuiltSegment& b, const Piece* old);
     void list();
     void list_culled(const Block& block, const CullingTest& culling, unsigned open);
     void release_dropped();
     void release(const Piece& piece);
     void shed_unseen();
 
-    SegmentTree tree_;
-    SegmentView view_;
+    SegmentView view_;  // of the last update
     const TileSource* tiles_from_ = nullptr;
     bool listed_ = false;  // segments_ is that of view_
+    // What is made, for a view that is that of the last update or the one prepared for.
+    SegmentView made_for_;
+    bool made_ = false;  // and no tile has changed since
+    SegmentTree tree_;
     std::vector<Block> blocks_;
     std::vector<std::uint32_t> free_blocks_;
     std::vector<InView> in_view_;
     std::vector<std::unique_ptr<Worker>> workers_;
+    std::vector<Fresh> fresh_;
 
     RangeAllocator vertex_places_, index_places_;  // levels have the place of indices
     GrowingArray<SegmentVertex> vertices_;

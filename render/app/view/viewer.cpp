@@ -254,6 +254,7 @@ void ViewerSession::update_globe() {
         looks_.overlay().upload(mesh_->segments(), mesh_->tiles());
         mesh_changed_ = true;
     }
+    mesh_->make_next();
     if (auto table = air_.update(camera.eye, render_.time, !resting_)) {
         looks_.set_sky(air_.tables(), *std::move(table), render_.time);
         air_changed_ = true;
