@@ -126,6 +126,14 @@ class Film {
         });
     }
 
+    /// What other threads can do for a frame while the one before is drawn.
+    void begin_next(long frame) {
+        begin_air(frame);
+        if (frame > report_.last_frame) return;
+        const FlightView view = path_.at(seconds_of(frame));
+        if (view.exaggeration == render_.exaggeration) mesh_.make_next(camera_at(seconds_of(frame), view));
+    }
+
     void settle(double seconds, const Camera& camera) {
         constexpr double ahead_s = 0.5;
         const double later = std::min(seconds + ahead_s, path_.duration());
@@ -150,7 +158,7 @@ class Film {
         }
         settle(seconds, camera);
         looks_.set_sky(tables_.get(), air_.get(), view.time);
-        begin_air(next_to_draw(frame + 1));
+        begin_next(next_to_draw(frame + 1));
         std::vector<std::uint8_t> rgba = steps_.time("draw", [&] {
             const int samples = looks_.samples(render_, camera, context_.limits().samples);
             if (!target_ || target_.samples() != samples)
