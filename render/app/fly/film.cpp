@@ -166,14 +166,15 @@ class Film {
             target_.bind();
             target_.clear(0, 0, 0, 1);
             const PicturePart whole{0, 0, camera.width, camera.height};
-            DrapeGround ground = data_.surface->for_layers(mesh_.segments(), camera, whole);
+            DrapeGround ground = data_.surface->for_layers(mesh_.segments(), camera, whole, render_.drawn_scale());
             looks_.draw({.camera = camera,
                          .part = whole,
                          .exaggeration = view.exaggeration,
                          .patches = mesh_.patches().texture(),
                          .ground = ground,
                          .morph_reach = mesh_.morph_reach(),
-                         .relief = render_.shows(Overlay::relief)},
+                         .relief = render_.shows(Overlay::relief),
+                         .pixel_scale = render_.drawn_scale()},
                         target_);
             return target_.read_rgba8();
         });

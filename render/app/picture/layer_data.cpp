@@ -112,12 +112,14 @@ LayerData LayerData::load(const RenderOptions& options, bool all_shipped) {
 
 std::vector<const Layer*> LayerData::shown(const RenderOptions& options) {
     std::vector<const Layer*> list;
-    if (options.shows(Overlay::borders)) list.push_back(&borders_.layer);
-    if (options.shows(Overlay::coastlines)) list.push_back(&coastlines_.layer);
     for (std::size_t i = 0; i < own_.size(); ++i) {
         own_[i].layer.style = style_of(options.layers[i]);
         if (options.layers[i].shown && options.layers[i].opacity > 0) list.push_back(&own_[i].layer);
     }
+    // A mesh below all else is the ground for shipped lines, too.
+    auto at = std::ranges::find_if(list, [](const Layer* layer) { return !layer->mesh; });
+    if (options.shows(Overlay::coastlines)) at = list.insert(at, &coastlines_.layer);
+    if (options.shows(Overlay::borders)) list.insert(at, &borders_.layer);
     return list;
 }
 

@@ -245,13 +245,14 @@ class Painter {
             gl().Scissor(needed.x - part.x, part.y + part.height - needed.y - needed.height, needed.width,
                          needed.height);
             target_.clear(0, 0, 0, 1);
-            DrapeGround ground = surface_.for_layers(segments, camera_, part);
+            DrapeGround ground = surface_.for_layers(segments, camera_, part, options_.drawn_scale());
             looks_.draw({.camera = camera_,
                          .part = part,
                          .exaggeration = options_.exaggeration,
                          .patches = patch_texture_,
                          .ground = ground,
-                         .relief = options_.shows(Overlay::relief)},
+                         .relief = options_.shows(Overlay::relief),
+                         .pixel_scale = options_.drawn_scale()},
                         target_);
             drawn = target_.read_rgba8();
             gl().Disable(GL_SCISSOR_TEST);

@@ -118,6 +118,7 @@ void ViewerSession::begin() {
     mesh_.emplace(render_, *data_.surface, std::min<std::size_t>(2048, static_cast<std::size_t>(limits.array_layers)));
     pace_.emplace(is_software(stage_.context.gl_renderer()), render_.max_triangles.value_or(~std::size_t{0}));
     render_.size = {window_.width(), window_.height()};
+    if (!render_.scale) render_.scale = std::clamp(std::round(100 * window_.scale()) / 100, 0.5, 4.0);
     const DrawnSurface& surface = *data_.surface;
     navigator_.emplace(
         Ground{[this](const glm::dvec3& origin, const glm::dvec3& way) { return point_under(origin, way); },
@@ -266,14 +267,15 @@ void ViewerSession::draw() {
     const bool changed = mesh_changed_ || air_changed_ || look_changed_;
     const Camera camera = shown_camera();
     const PicturePart whole{0, 0, camera.width, camera.height};
-    DrapeGround ground = data_.surface->for_layers(mesh_->segments(), camera, whole);
+    DrapeGround ground = data_.surface->for_layers(mesh_->segments(), camera, whole, render_.drawn_scale());
     const GlobeLooks::Frame frame{.camera = camera,
                                   .part = whole,
                                   .exaggeration = render_.exaggeration,
                                   .patches = mesh_->patches().texture(),
                                   .ground = ground,
                                   .morph_reach = mesh_->morph_reach(),
-                                  .relief = render_.shows(Overlay::relief)};
+                                  .relief = render_.shows(Overlay::relief),
+                                  .pixel_scale = render_.drawn_scale()};
     const bool complete = resting_ && mesh_->complete() && air_.is_for(camera.eye, render_.time);
     picture_new_ = false;
     worked_ = true;
@@ -303,7 +305,8 @@ void ViewerSession::draw() {
 void ViewerSession::draw_labels() {
     const Camera camera = shown_camera();
     const PicturePart whole{0, 0, camera.width, camera.height};
-    looks_.draw_labels(camera, whole, data_.surface->for_layers(mesh_->segments(), camera, whole));
+    const double scale = render_.drawn_scale();
+    looks_.draw_labels(camera, whole, data_.surface->for_layers(mesh_->segments(), camera, whole, scale), scale);
 }
 
 void ViewerSession::present() {
