@@ -91,6 +91,8 @@ struct RenderOptions {
 
     std::vector<LayerOptions> layers{};  ///< over the terrain, later on top
 
+    int part_side =
+        2048;  ///< pixels, 96 or more: larger pictures are drawn in parts. No option says another: for tests
     std::optional<PictureCrop> crop{};  ///< only these pixels of the picture, just as they are in the whole
     std::filesystem::path output = "globe.png";
 
@@ -103,6 +105,7 @@ struct RenderOptions {
     }
     /// What of the picture is drawn.
     PictureCrop drawn() const { return crop.value_or(PictureCrop{0, 0, size.width, size.height}); }
+    bool has_layers() const { return !layers.empty() || shows(Overlay::coastlines) || shows(Overlay::borders); }
     double drawn_scale() const { return scale.value_or(1); }
     bool shows(Overlay overlay) const { return (show & static_cast<std::uint32_t>(overlay)) != 0; }
 };
