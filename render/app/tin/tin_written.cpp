@@ -88,16 +88,15 @@ class Certifier {
     }
 
     void mend(WrittenTin& tin, const std::vector<planet::FarTriangle>& due) {
-        if (!mending_) mending_.emplace(std::move(tin.mesh));
         tin.surface = {};
-        for (const planet::FarTriangle& far : due) tin.inserted += mending_->insert(far.sample, far.triangle);
-        tin.mesh = mending_->mesh(grid_);
+        const planet::MendedTin mended = planet::mend(tin.mesh, grid_, due);
+        tin.inserted += mended.inserted;
         const double step = tin.rounding.step;
         place(tin);
         if (tin.rounding.step != step)  // everything has moved
             measure_.measure(tin.mesh, tin.surface.vertices);
         else
-            measure_.measure_again(tin.mesh, tin.surface.vertices, mending_->take_changed());
+            measure_.measure_again(tin.mesh, tin.surface.vertices, mended.changed);
     }
 
     void place(WrittenTin& tin) const {
@@ -123,7 +122,6 @@ class Certifier {
     const RasterFrame& frame_;
     const TinGoal& goal_;
     planet::WrittenMeasure measure_;
-    std::optional<planet::TinMending> mending_;
 };
 
 void compare(const std::string& path, planet::MeshFormat format, const planet::SurfaceMesh& measured) {
