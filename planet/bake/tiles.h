@@ -93,6 +93,7 @@ class TileMaker {
     std::vector<std::uint8_t> lacks_below_;
     std::vector<float> deviation_, radius_;
     std::vector<glm::dvec3> normals_;
+    std::vector<WeighedOrigin> origins_;
     std::vector<GeoidUndulation> undulations_;
     std::vector<CellAbove> above_;  // by bisection level
     TileResampling resampling_;
