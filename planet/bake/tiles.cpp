@@ -205,8 +205,6 @@ void TileMaker::sample(Tile& tile, InnerTile* above) {
     tile.height.resize(normals_.size());
     origins_.resize(normals_.size());
     scene_.field.heights_with_origins(normals_, tile.height, origins_);
-    for (std::size_t v = 0; v < origins_.size(); ++v)
-        if (std::isnan(tile.height[v])) origins_[v] = {};
     quantize(tile.height);
     if (above) {
         const auto& corner = tile_layout().corners[scene_.plan.layers().local_above(tile.root)];
@@ -219,15 +217,21 @@ void TileMaker::sample(Tile& tile, InnerTile* above) {
     if (scene_.scale.has_undulation) sample_undulations(tile, above);
 }
 
-// To whole quanta; NaN is 0.
-void TileMaker::quantize(std::span<float> heights) const {
+// To whole quanta; NaN is 0, of no source.
+void TileMaker::quantize(std::span<float> heights) {
     const double quantum = scene_.scale.quantum_m, limit = static_cast<double>(largest_height_quanta);
-    bool fits = true;
+    bool fits = true, answered = true;
     for (float& height : heights) {
         const double quanta = std::nearbyint(static_cast<double>(height) / quantum);
         fits &= !(std::abs(quanta) > limit);
-        height = quanta == quanta ? static_cast<float>(quanta * quantum) : 0.0f;
+        answered &= quanta == quanta;
+        height = static_cast<float>(quanta * quantum);
     }
+    for (std::size_t v = 0; v < heights.size() && !answered; ++v)
+        if (std::isnan(heights[v])) {
+            heights[v] = 0;
+            origins_[v] = {};
+        }
     if (!fits) refuse_heights(heights);
 }
 

@@ -75,9 +75,10 @@ void LayeredField::heights_of_layer(std::size_t layer, std::span<const glm::dvec
         layers_[layer]->heights(normals, out);
     } else {
         layers_[layer]->heights_with_origins(normals, out, origins);
-        for (WeighedOrigin& o : origins)
-            for (std::uint32_t* file : {&o.origin.file, &o.origin.other})
-                if (*file > 0) *file += first_file_[layer];
+        const std::uint32_t below = first_file_[layer];
+        for (std::size_t i = 0; i < origins.size() && below > 0; ++i)
+            for (std::uint32_t* file : {&origins[i].origin.file, &origins[i].origin.other})
+                *file += *file > 0 ? below : 0;
     }
     to_common_datum(*layers_[layer], normals, out);
 }
