@@ -137,6 +137,17 @@ void ViewerSession::begin() {
     report_.gl_version = stage_.context.gl_version();
     report_.gl_renderer = stage_.context.gl_renderer();
     report_.context = window_.context_way();
+    warn();
+}
+
+/// Of layers, in the window and on standard error.
+void ViewerSession::warn() {
+    std::string lines;
+    for (const LayerReport& layer : data_.layers.report())
+        if (!layer.warning.empty()) lines += (lines.empty() ? "" : "\n") + layer.warning;
+    if (lines.empty()) return;
+    warn_of_layers(data_.layers.report());
+    notice(lines);
 }
 
 Lens ViewerSession::lens() const {
@@ -170,7 +181,7 @@ std::optional<glm::dvec3> ViewerSession::mesh_at(const glm::dvec2& pixel) const 
 /// How long there is nothing to do but to wait for the user. Other threads need the processor, too.
 double ViewerSession::patience() const {
     if (!resting_ || worked_ || counts_frames() || save_next_) return 0;
-    const bool waits = !frame_.settled() || panels_.wants_frame || automatic() || window_.seconds() - noticed_at_ < 4;
+    const bool waits = !frame_.settled() || panels_.wants_frame || automatic() || window_.seconds() < notice_ends_;
     return waits ? 0.016 : 0.5;
 }
 
@@ -311,7 +322,7 @@ void ViewerSession::draw_labels() {
 
 void ViewerSession::present() {
     if (!picture_new_ && !input_ && !panels_.wants_frame && !counts_frames() && !save_next_ &&
-        window_.seconds() - noticed_at_ > 4 && window_.seconds() - last_swap_ < 0.5)
+        window_.seconds() > notice_ends_ && window_.seconds() - last_swap_ < 0.5)
         return;
     gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl().Viewport(0, 0, window_.width(), window_.height());

@@ -19,7 +19,7 @@ namespace {
 // One dark glass, through which no name can be read, two greys, one accent. All distances are multiples of 8.
 constexpr ImU32 ink = IM_COL32(236, 240, 244, 255), quiet = IM_COL32(160, 170, 181, 255),
                 accent = IM_COL32(255, 196, 84, 255), glass = IM_COL32(13, 17, 22, 250),
-                thin_glass = IM_COL32(13, 17, 22, 184), shade = IM_COL32(0, 0, 0, 190),
+                thin_glass = IM_COL32(13, 17, 22, 184), shade = IM_COL32(0, 0, 0, 210),
                 line = IM_COL32(255, 255, 255, 26);
 
 ImVec4 color(ImU32 c) {
@@ -60,7 +60,7 @@ void set_style(float scale) {
 /// Text that can be read over any ground.
 void shaded_text(ImDrawList& list, ImVec2 at, ImU32 ink_color, const char* text, const char* end = nullptr) {
     for (const ImVec2 off : {ImVec2(1, 1), ImVec2(-1, 1), ImVec2(1, -1), ImVec2(-1, -1)})
-        list.AddText({at.x + off.x, at.y + off.y}, IM_COL32(0, 0, 0, 150), text, end);
+        list.AddText({at.x + off.x, at.y + off.y}, shade, text, end);
     list.AddText(at, ink_color, text, end);
 }
 
@@ -162,7 +162,7 @@ void PanelDrawing::draw_scale_bar(const Panels& panels) {
                 y = std::round(size.y - unit(48));
     const float tick = unit(6);
     const ImVec2 points[] = {{x0, y - tick}, {x0, y}, {x1, y}, {x1, y - tick}};
-    list.AddPolyline(points, 4, IM_COL32(0, 0, 0, 150), 0, unit(4));
+    list.AddPolyline(points, 4, shade, 0, unit(4));
     list.AddPolyline(points, 4, ink, 0, unit(1.5f));
     const float width = ImGui::CalcTextSize(panels.scale_text.c_str()).x;
     shaded_text(list, {std::round(0.5f * (x0 + x1 - width)), y - tick - ImGui::GetFontSize()}, ink,

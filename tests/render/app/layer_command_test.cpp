@@ -182,6 +182,23 @@ TEST_F(LayerCommand, AMeshHasItsPictureOnIt) {
     EXPECT_LT(std::abs(plain[0] - plain[2]), 30);
 }
 
+TEST_F(LayerCommand, AMeshHasTheColourOfItsMaterial) {
+    const std::string dem = OCTAGLOBE_SOURCE_DIR "/data/sangre_de_cristo.tif";
+    ASSERT_EQ(run(folder_.path(), {"tin", dem, "--max-deviation", "200", "-o", "t.glb"}).status, 0);
+    const std::string grey = content(folder_ / "t.glb"), factor = R"("baseColorFactor":[0.6,0.6,0.6,)";
+    const auto seen = [&](const std::string& other) {
+        std::string bytes = grey;
+        EXPECT_NE(bytes.find(factor), bytes.npos);
+        write("m.glb", bytes.replace(bytes.find(factor), factor.size(), other));
+        return pixel(picture("--at 37.5,-105 --range 60km --time 2026-06-21T18:00:00Z --layer m.glb"), 100, 100);
+    };
+    const auto clay = seen(factor), red = seen(R"("baseColorFactor":[0.9,0.1,0.1,)"),
+               white = seen(R"("baseColorFactor":[1.0,1.0,1.0,)");
+    EXPECT_GT(red[0], red[1] + 80);
+    EXPECT_EQ(white, clay);
+    EXPECT_LT(std::abs(clay[0] - clay[2]), 40);
+}
+
 TEST_F(LayerCommand, LabelsAreDrawn) {
     write(
         "peak.geojson",

@@ -462,6 +462,29 @@ TEST_F(ViewCommand, LinesAndLettersFollowTheDensityOfTheDisplay) {
     EXPECT_NEAR(red_rows(" --scale 1", ""), 4, 1);
 }
 
+// In the middle of the window, above the line of status, where it stays for some seconds.
+TEST_F(ViewCommand, APictureThatCannotBeReadIsANotice) {
+    planet::write_image(folder_ / "photo.png", {8, 8, 3, std::vector<std::uint8_t>(8 * 8 * 3, 90)});
+    ASSERT_EQ(run(folder_.path(), {"tin", OCTAGLOBE_SOURCE_DIR "/data/sangre_de_cristo.tif", "--max-deviation", "500",
+                                   "--drape", "photo.png", "-o", "t.glb"})
+                  .status,
+              0);
+    std::string bytes = content(folder_ / "t.glb");
+    bytes.replace(bytes.rfind("\x89PNG"), 4, "none");
+    std::ofstream(folder_ / "t.glb", std::ios::binary) << bytes;
+    const std::string view = "view --at 10,10 --range 9000km --size 640x360 --layer t.glb --screenshot ";
+    const Outcome outcome = run(folder_.path(), words(view + "told.png"));
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err.rfind("octaglobe: warning: t.glb: is no picture", 0), 0u) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    ASSERT_EQ(run(folder_.path(), words(view + "silent.png --bare")).status, 0);
+    const planet::Image told = planet::read_image(folder_ / "told.png"),
+                        silent = planet::read_image(folder_ / "silent.png");
+    int different = 0;
+    for (int x = 220; x < 420; ++x) different += std::abs(told.pixel(x, 264)[2] - silent.pixel(x, 264)[2]) > 20;
+    EXPECT_GT(different, 100);
+}
+
 /// 6000 m above the geoid over Blanca Peak.
 constexpr const char* plate =
     "ply\nformat ascii 1.0\ncomment frame source\ncomment crs EPSG:4326\ncomment vertical_datum egm96\n"
