@@ -100,6 +100,33 @@ std::size_t component_bytes(std::size_t type) {
     return type == type_byte ? 1 : type == type_short ? 2 : 4;
 }
 
+// Of a primitive's triangles, one after the other.
+struct Corners {
+    std::optional<Accessor> indices;  ///< none: the vertices in their order
+    std::size_t count, vertices, base;
+
+    std::uint32_t operator[](std::size_t i) const {
+        const std::size_t vertex = indices ? index(i) : i;
+        if (vertex >= vertices) throw MalformedBytes("a triangle has no vertex");
+        return static_cast<std::uint32_t>(base + vertex);
+    }
+
+  private:
+    std::size_t index(std::size_t i) const {
+        const std::size_t at = i * indices->stride;
+        switch (indices->component_type) {
+            case type_byte:
+                return indices->bytes[at];
+            case type_short:
+                return number_at<std::uint16_t>(indices->bytes, at);
+            case type_int:
+                return number_at<std::uint32_t>(indices->bytes, at);
+            default:
+                throw MalformedBytes("has indices that are not whole numbers");
+        }
+    }
+};
+
 class GlbScene {
   public:
     GlbScene(const Chunks& chunks, std::size_t file_bytes)
@@ -195,10 +222,8 @@ class GlbScene {
         const std::size_t vertices =
             add_vertices(accessor(whole(primitive.at("attributes"), "POSITION"), "VEC3", 3), scene_from_node);
         add_looks(primitive, vertices, scene_from_node);
-        std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
-        for (std::uint32_t& corner : corners) corner += static_cast<std::uint32_t>(base);
         const bool mirrored = glm::determinant(glm::dmat3(scene_from_node)) < 0;
-        add_triangles(corners, mode, mirrored);
+        add_triangles(corners_of(primitive, vertices, base), mode, mirrored);
     }
 
     // Small files of many instances would else take for ever.
@@ -212,6 +237,7 @@ class GlbScene {
         auto& vertices = read_.mesh.vertices;
         if (vertices.size() + positions.count > std::min<std::size_t>(file_bytes_, strip_restart))
             throw MalformedBytes("repeats its parts too often");
+        if (vertices.empty()) vertices.reserve(positions.count);
         for (std::size_t i = 0; i < positions.count; ++i) {
             const auto p = number_at<std::array<float, 3>>(positions.bytes, i * positions.stride);
             vertices.push_back(scene_from_node * glm::dvec4(p[0], p[1], p[2], 1));
@@ -278,6 +304,7 @@ class GlbScene {
         if (a.count != vertices) throw MalformedBytes("an attribute has not one element a vertex");
         if (a.component_type != type_float && a.component_type != type_byte && a.component_type != type_short)
             throw MalformedBytes("an attribute has numbers of an unknown type");
+        if (out.empty()) out.reserve(vertices);
         for (std::size_t i = 0; i < vertices; ++i) {
             Vector v(1);
             for (int k = 0; k < numbers; ++k) {
@@ -308,51 +335,32 @@ class GlbScene {
         read_.looks.picture.assign(reinterpret_cast<const char*>(binary_.data()) + offset, length);
     }
 
-    std::vector<std::uint32_t> corners_of(const Json& primitive, std::size_t vertices) {
-        std::vector<std::uint32_t> corners;
-        if (!primitive.contains("indices")) {
-            count_corners(vertices);
-            for (std::uint32_t i = 0; i < vertices; ++i) corners.push_back(i);
-            return corners;
+    Corners corners_of(const Json& primitive, std::size_t vertices, std::size_t base) {
+        Corners corners{{}, vertices, vertices, base};
+        if (primitive.contains("indices")) {
+            corners.indices = accessor(whole(primitive, "indices"), "SCALAR", 1);
+            corners.count = corners.indices->count;
         }
-        const Accessor indices = accessor(whole(primitive, "indices"), "SCALAR", 1);
-        count_corners(indices.count);
-        corners.reserve(indices.count);
-        for (std::size_t i = 0; i < indices.count; ++i) {
-            const std::size_t at = i * indices.stride;
-            switch (indices.component_type) {
-                case type_byte:
-                    corners.push_back(indices.bytes[at]);
-                    break;
-                case type_short:
-                    corners.push_back(number_at<std::uint16_t>(indices.bytes, at));
-                    break;
-                case type_int:
-                    corners.push_back(number_at<std::uint32_t>(indices.bytes, at));
-                    break;
-                default:
-                    throw MalformedBytes("has indices that are not whole numbers");
-            }
-            if (corners.back() >= vertices) throw MalformedBytes("a triangle has no vertex");
-        }
+        count_corners(corners.count);
         return corners;
     }
 
     // 3.7.2.1. A strip's triangle with two equal corners only turns it.
-    void add_triangles(const std::vector<std::uint32_t>& corners, std::size_t mode, bool mirrored) {
+    void add_triangles(const Corners& corners, std::size_t mode, bool mirrored) {
         auto& triangles = read_.mesh.triangles;
         const std::size_t before = triangles.size();
         if (mode == 4) {
-            for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+            if (before == 0) triangles.reserve(corners.count / 3);
+            for (std::size_t i = 0; i + 2 < corners.count; i += 3)
                 triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
         } else if (mode == 5) {
-            for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
+            for (std::size_t i = 0; i + 2 < corners.count; ++i) {
                 const std::uint32_t a = corners[i], b = corners[i + 1 + i % 2], c = corners[i + 2 - i % 2];
                 if (a != b && b != c && c != a) triangles.push_back({a, b, c});
             }
         } else {
             PolygonFan fan(triangles);
-            for (const std::uint32_t corner : corners) fan.add(corner);
+            for (std::size_t i = 0; i < corners.count; ++i) fan.add(corners[i]);
         }
         if (!mirrored) return;
         for (std::size_t i = before; i < triangles.size(); ++i) std::swap(triangles[i][1], triangles[i][2]);

@@ -13,9 +13,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Room for the meshes of views at half a pixel, made at once: memory that is not used costs nothing, but moving 10 MB to
-/// a larger place takes 10 ms of one frame, most of it for new pages.
-constexpr std::size_t usual_vertices = 1 << 20, usual_blocks = 1 << 16;
+/// Room made at once, see segment_arrays.cpp.
+constexpr std::size_t usual_blocks = 1 << 16;
 
 /// Finds a cell that is split in a mesh.
 PlacedCell find_split_cell(const TileSource& tiles, LocationCode cell) {
@@ -23,25 +22,6 @@ PlacedCell find_split_cell(const TileSource& tiles, LocationCode cell) {
     const PlacedTile* tile = tiles.tile(cell.ancestor(cell.bisection_level() - below));
     assert(tile != nullptr);
     return {tile, static_cast<unsigned>(cell.bits() & ((1u << below) - 1)) | 1u << below};
-}
-
-/// Sorts ranges and joins those that touch or overlap.
-void join(std::vector<Range>& ranges) {
-    std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
-    std::size_t kept = 0;
-    for (const Range& r : ranges) {
-        Range* const last = kept > 0 ? &ranges[kept - 1] : nullptr;
-        if (last && r.first <= last->first + last->count)
-            last->count = std::max(last->count, r.first + r.count - last->first);
-        else
-            ranges[kept++] = r;
-    }
-    ranges.resize(kept);
-}
-
-template <class T>
-void copy(GrowingArray<T>& to, std::uint32_t at, std::span<const T> from, std::uint32_t first, std::uint32_t count) {
-    if (count > 0) std::memcpy(to.data() + at, from.data() + first, count * sizeof(T));
 }
 
 }  // namespace
@@ -114,27 +94,24 @@ void Segments::build(const TileSource& tiles, const SegmentView& view, int threa
 }
 
 void Segments::update(const TileSource& tiles, const SegmentView& view, int threads) {
-    changed_vertices_.clear();
-    changed_indices_.clear();
-    built_ = 0;
+    arrays_.begin_changes();
     if (tiles_from_ != &tiles || !view.same_but_for_eye_and_culling(view_)) clear();
     const bool at_rest = listed_ && view.test.eye == view_.test.eye && view.culling == view_.culling;
     tiles_from_ = &tiles;
     view_ = view;
     if (at_rest) return;
     const auto workers = static_cast<std::size_t>(std::max(threads, 1));
-    write_fresh(workers);
+    arrays_.write(view.morph, workers);
     make(tiles, view, workers);
-    write_fresh(workers);
-    join(changed_vertices_);
-    join(changed_indices_);
+    arrays_.write(view.morph, workers);
+    arrays_.end_changes();
     list();
     shed_unseen();
     listed_ = true;
 }
 
 void Segments::prepare(const TileSource& tiles, const SegmentView& view, int threads) {
-    if (tiles_from_ != &tiles || !view.same_but_for_eye_and_culling(view_) || !fresh_.empty()) return;
+    if (tiles_from_ != &tiles || !view.same_but_for_eye_and_culling(view_) || !arrays_.all_written()) return;
     listed_ = false;
     make(tiles, view, static_cast<std::size_t>(std::max(threads, 1)));
 }
@@ -166,15 +143,14 @@ void Segments::clear() {
         free_blocks_.push_back(static_cast<std::uint32_t>(i));
     }
     segments_.clear();
-    fresh_.clear();
+    arrays_.clear();
     listed_ = made_ = false;
-    vertex_places_.clear();
-    index_places_.clear();
     total_leaves_ = 0;
 }
 
 std::vector<Segments::Job> Segments::stale_blocks() {
     std::vector<Job> jobs;
+    if (blocks_.empty()) blocks_.reserve(usual_blocks);
     in_view_.clear();
     for (const auto [i, open] : tree_.in_view()) {
         SegmentNode& n = tree_.node(i);
@@ -256,48 +232,6 @@ void Segments::build(const TileSource& tiles, Job& job, Worker& worker) const {
     }
 }
 
-void Segments::write_fresh(std::size_t threads) {
-    if (vertices_.size() == 0) reserve();
-    // What has been written since the last view is listed as changed, even if its place is no longer in use.
-    const bool first = built_ == 0;
-    auto vertices = std::max<std::size_t>(vertex_places_.size(), first ? 0 : vertices_.size()),
-         indices = std::max<std::size_t>(index_places_.size(), first ? 0 : indices_.size());
-    for (const Fresh& f : fresh_) {
-        const Segment& s = f.segment;
-        changed_vertices_.push_back({s.first_vertex, s.vertex_count});
-        changed_indices_.push_back({s.first_index, s.index_count});
-        vertices = std::max<std::size_t>(vertices, s.first_vertex + s.vertex_count);
-        indices = std::max<std::size_t>(indices, s.first_index + s.index_count);
-    }
-    vertices_.resize(vertices);
-    if (view_.morph) morphs_.resize(vertices);
-    indices_.resize(indices);
-    leaf_levels_.resize(indices);
-    constexpr std::size_t run = 64;
-    parallel_for((fresh_.size() + run - 1) / run, static_cast<unsigned>(threads), [&](std::size_t r) {
-        for (std::size_t k = r * run; k < std::min(fresh_.size(), (r + 1) * run); ++k) write(fresh_[k]);
-    });
-    built_ += fresh_.size();
-    fresh_.clear();
-}
-
-void Segments::reserve() {
-    blocks_.reserve(usual_blocks);
-    vertices_.reserve_more(usual_vertices);
-    if (view_.morph) morphs_.reserve_more(usual_vertices);
-    indices_.reserve_more(2 * usual_vertices);
-    leaf_levels_.reserve_more(2 * usual_vertices);
-}
-
-void Segments::write(const Fresh& fresh) {
-    const SegmentBuilder& from = *fresh.from;
-    const Segment& s = fresh.segment;
-    copy(vertices_, s.first_vertex, from.vertices(), fresh.from_vertex, s.vertex_count);
-    if (view_.morph) copy(morphs_, s.first_vertex, from.morphs(), fresh.from_vertex, s.vertex_count);
-    copy(indices_, s.first_index, from.indices(), fresh.from_index, s.index_count);
-    copy(leaf_levels_, s.first_leaf, from.leaf_levels(), fresh.from_leaf, s.leaves);
-}
-
 /// Gives places to the new parts of a block.
 void Segments::place(const Job& job) {
     Block& block = blocks_[job.block];
@@ -317,10 +251,8 @@ void Segments::place(const Job& job) {
             release_until(part.piece);
             named = &old[next++];
         }
-        const Piece& piece = block.pieces.emplace_back(part.is_new ? place(part.built, named) : *named);
-        if (part.is_new)
-            fresh_.push_back({&job.worker->builder, part.built.first_vertex, part.built.first_index,
-                              part.built.first_leaf, piece.segment});
+        const Piece& piece =
+            block.pieces.emplace_back(part.is_new ? new_piece(part.built, job.worker->builder, named) : *named);
         block.expires = std::min(block.expires, piece.expires);
         block.least_reach = std::min(block.least_reach, piece.least_reach);
         block.odometer = std::min(block.odometer, piece.odometer);
@@ -329,32 +261,21 @@ void Segments::place(const Job& job) {
     release_until(old.size());
 }
 
-// What is built again mostly has as many vertices as before, or nearly. What outgrew its place is likely to do so again.
-// @param old of the same cell, or nullptr
-Segments::Piece Segments::place(const BuiltSegment& b, const Piece* old) {
-    Range vertices, indices;
-    if (old && b.vertices <= old->vertex_room && b.indices <= old->index_room) {
-        vertices = {old->segment.first_vertex, old->vertex_room};
-        indices = {old->segment.first_index, old->index_room};
-        total_leaves_ -= old->segment.leaves;
-    } else {
-        if (old) release(*old);
-        const auto room = [&](std::uint32_t count) { return old ? (count + 31) / 32 * 32 : count; };
-        vertices = vertex_places_.allocate(room(b.vertices));
-        indices = index_places_.allocate(room(b.indices));
-    }
+/// @param old of the same cell, or nullptr
+Segments::Piece Segments::new_piece(const BuiltSegment& b, const SegmentBuilder& builder, const Piece* old) {
+    if (old) total_leaves_ -= old->segment.leaves;
     total_leaves_ += b.leaves;
+    const SegmentPlace place = arrays_.place(b, builder, old ? &old->place : nullptr);
     return {.segment = {.root = b.cell,
                         .patch = b.patch,
-                        .first_vertex = vertices.first,
+                        .first_vertex = place.vertices.first,
                         .vertex_count = b.vertices,
-                        .first_index = indices.first,
+                        .first_index = place.indices.first,
                         .index_count = b.indices,
                         .leaves = b.leaves,
-                        .first_leaf = indices.first,
+                        .first_leaf = place.indices.first,
                         .detailed = b.detailed},
-            .vertex_room = vertices.count,
-            .index_room = indices.count,
+            .place = place,
             .sphere = b.sphere,
             .expires = tree_.expiry(b.slack),
             .ratio_max = b.ratio_max,
@@ -414,8 +335,7 @@ void Segments::release_dropped() {
 }
 
 void Segments::release(const Piece& p) {
-    vertex_places_.free({p.segment.first_vertex, p.vertex_room});
-    index_places_.free({p.segment.first_index, p.index_room});
+    arrays_.release(p.place);
     total_leaves_ -= p.segment.leaves;
 }
 
@@ -450,8 +370,8 @@ std::uint64_t Segments::hash() const {
                 std::memcpy(word, &m, sizeof m);
                 words(word, 3);
             }
-        words(indices_.data() + s.first_index, s.index_count);
-        words(leaf_levels_.data() + s.first_leaf, s.leaves);
+        words(&indices()[s.first_index], s.index_count);
+        words(&leaf_levels()[s.first_leaf], s.leaves);
     }
     return h;
 }

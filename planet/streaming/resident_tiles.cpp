@@ -48,9 +48,9 @@ SegmentView view_after(const SegmentView& before, const SegmentView& now) {
     after.test.eye += now.test.eye - before.test.eye;
     after.culling.eye += now.culling.eye - before.culling.eye;
     for (std::size_t k = 0; k < now.culling.inward.size(); ++k) {
-        const glm::dvec3 inward = 2.0 * now.culling.inward[k] - before.culling.inward[k];
-        if (now.culling.inward[k] != glm::dvec3(0) && inward != glm::dvec3(0))
-            after.culling.inward[k] = glm::normalize(inward);
+        const glm::dvec3 turn = now.culling.inward[k] - before.culling.inward[k];
+        if (turn != glm::dvec3(0) && now.culling.inward[k] != glm::dvec3(0))
+            after.culling.inward[k] = glm::normalize(now.culling.inward[k] + turn);
     }
     return after;
 }

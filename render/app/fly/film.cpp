@@ -144,9 +144,14 @@ class Film {
         }
     }
 
+    /// What other threads do for the next frame while this one is drawn.
     void begin_next(long frame, const FlightView& view) {
         looks_.set_sky(tables_.get(), air_.get(), view.time);
-        begin_air(next_to_draw(frame + 1));
+        const long next = next_to_draw(frame + 1);
+        begin_air(next);
+        if (in_parts_ || next > report_.last_frame) return;
+        const FlightView coming = path_.at(seconds_of(next));
+        if (coming.exaggeration == view.exaggeration) mesh_.make_next(camera_at(seconds_of(next), coming));
     }
 
     void settle(double seconds, const Camera& camera) {

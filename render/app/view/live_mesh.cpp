@@ -118,7 +118,15 @@ std::size_t LiveMesh::most_tiles() const {
 
 void LiveMesh::make_next() {
     if (!goes_on_ || (velocity_m_s_ == glm::dvec3(0) && view_.culling == view_before_.culling)) return;
-    planet::SegmentView next = planet::view_after(view_before_, view_);
+    begin_next(planet::view_after(view_before_, view_));
+}
+
+void LiveMesh::make_next(const Camera& camera) {
+    // How fine a budget allows it to be is known only once all of its tiles are there.
+    if (!options_.max_triangles) begin_next(view_of({.camera = camera, .at_rest = true}));
+}
+
+void LiveMesh::begin_next(const planet::SegmentView& next) {
     mesh_ahead_.begin(next, view_ahead(next), most_tiles(), static_cast<int>(threads_beside(options_)));
 }
 

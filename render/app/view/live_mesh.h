@@ -33,6 +33,8 @@ class LiveMesh {
     /// While the mesh of the last update is drawn, another thread makes that of the next, if the motion goes on as it is.
     /// What can be asked stays as it is but for tiles(), which are not to be looked at until the next update.
     void make_next();
+    /// The same for a view that is known, to be settled.
+    void make_next(const Camera& camera);
     /// After update(): whether patches came, or the mesh has changed. Takes time for at most `most` patches.
     bool update_patches(bool mesh_changed, std::size_t most);
 
@@ -59,6 +61,7 @@ class LiveMesh {
 
   private:
     bool step(const Wanted& wanted, bool wait);
+    void begin_next(const planet::SegmentView& next);
     std::optional<planet::SegmentView> view_ahead(const planet::SegmentView& view) const;
     std::size_t most_tiles() const;
     planet::SegmentView view_of(const Wanted& wanted) const;
