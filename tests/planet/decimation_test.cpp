@@ -357,7 +357,7 @@ TEST(Decimation, TellsHowFarItIs) {
         PatchTriangulation mesh = full(raster);
         decimate(mesh, raster, deviation,
                  {.priority = priority, .max_triangles = 100, .progress = [&](double part) { told.push_back(part); }});
-        EXPECT_GE(told.size(), 3u);
+        EXPECT_GE(told.size(), 2u);
         EXPECT_TRUE(std::ranges::is_sorted(told));
         EXPECT_GT(told.front(), 0.2);
         EXPECT_LE(told.back(), 1);
