@@ -13,6 +13,8 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::distance(a, b)));
 }
 
+constexpr std::size_t positions_at_once = 256;
+
 // As RasterSurface rounds.
 int nearest_sample(double at) {
     const double below = std::floor(at);
@@ -75,7 +77,7 @@ void RasterField::heights_with_origins(std::span<const glm::dvec3> normals, std:
                                        std::span<WeighedOrigin> origins) const {
     assert(out.size() == normals.size() && (origins.empty() || origins.size() == normals.size()));
     SampleCursor cursor(*samples_);
-    glm::dvec2 at[256];
+    glm::dvec2 at[positions_at_once];
     for (std::size_t first = 0; first < normals.size(); first += std::size(at)) {
         const std::size_t n = std::min(std::size(at), normals.size() - first);
         map_.samples_from_normals(normals.subspan(first, n), {at, n});
@@ -88,40 +90,42 @@ void RasterField::find_origins(std::span<const glm::dvec2> samples, std::span<co
                                std::span<WeighedOrigin> origins) const {
     std::fill(origins.begin(), origins.end(), WeighedOrigin{{1, 1}, 1});
     if (!mosaic_) return;
-    const int columns = survey_.columns, rows = raster().height;
-    std::vector<glm::ivec2> nearest(samples.size());
-    glm::ivec2 least(columns, rows), most(-1);
+    const glm::ivec2 end(survey_.columns, raster().height);
+    glm::ivec2 least = end, most(-1);
+    glm::ivec2 nearest[positions_at_once];
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (std::isnan(heights[i])) continue;
-        const glm::ivec2 at(nearest_sample(samples[i].x), nearest_sample(samples[i].y));
-        // Around the planet, or half a sample beyond the outer ones.
-        const int column =
-            surface_.columns_around() > 0 ? (at.x + columns) % columns : std::clamp(at.x, 0, columns - 1);
-        nearest[i] = {column, std::clamp(at.y, 0, rows - 1)};
-        least = glm::min(least, nearest[i]);
-        most = glm::max(most, nearest[i]);
+        glm::ivec2 at(nearest_sample(samples[i].x), nearest_sample(samples[i].y));
+        if (surface_.columns_around() > 0) at.x = (at.x + end.x) % end.x;
+        at = glm::clamp(at, glm::ivec2(0), end - 1);  // up to half a sample beyond the outer ones
+        least = glm::min(least, at);
+        most = glm::max(most, at);
+        nearest[i] = at;
     }
     if (most.x < 0) return;
-    // Of places that are near each other, which nearly all are, at once.
-    constexpr int most_across = 128;
     const glm::ivec2 size = most - least + 1;
-    const bool near = size.x <= most_across && size.y <= most_across;
-    SampleWindow window{least.x, least.y, near ? size.x : 1, near ? size.y : 1};
+    SampleWindow window{least.x, least.y, size.x, size.y};
+    const auto set = [&](std::size_t i, std::uint32_t part) { origins[i].origin = {1 + part, 1 + part}; };
+    if (const std::optional<std::uint32_t> part = mosaic_->only_part(window)) {
+        for (std::size_t i = 0; i < samples.size(); ++i) set(i, *part);
+        return;
+    }
+    constexpr int most_across = 128;
+    const bool near_each_other = size.x <= most_across && size.y <= most_across;
+    if (!near_each_other) window.columns = window.rows = 1;
     std::vector<std::uint32_t> parts(window.count());
-    if (near) mosaic_->find_parts(window, parts);
+    if (near_each_other) mosaic_->find_parts(window, parts);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (std::isnan(heights[i])) continue;
-        std::size_t k = 0;
-        if (near) {
-            k = static_cast<std::size_t>(nearest[i].y - least.y) * static_cast<std::size_t>(size.x) +
-                static_cast<std::size_t>(nearest[i].x - least.x);
-        } else {
-            window.column = nearest[i].x;
-            window.row = nearest[i].y;
-            mosaic_->find_parts(window, parts);
+        if (near_each_other) {
+            const glm::ivec2 at = nearest[i] - least;
+            set(i, parts[static_cast<std::size_t>(at.y * size.x + at.x)]);
+            continue;
         }
-        const std::uint32_t file = 1 + parts[k];
-        origins[i].origin = {file, file};
+        window.column = nearest[i].x;
+        window.row = nearest[i].y;
+        mosaic_->find_parts(window, parts);
+        set(i, parts[0]);
     }
 }
 
