@@ -100,6 +100,33 @@ std::size_t component_bytes(std::size_t type) {
     return type == type_byte ? 1 : type == type_short ? 2 : 4;
 }
 
+// Of a primitive's triangles, one after the other.
+struct Corners {
+    std::optional<Accessor> indices;  ///< none: the vertices in their order
+    std::size_t count, vertices, base;
+
+    std::uint32_t operator[](std::size_t i) const {
+        const std::size_t vertex = indices ? index(i) : i;
+        if (vertex >= vertices) throw MalformedBytes("a triangle has no vertex");
+        return static_cast<std::uint32_t>(base + vertex);
+    }
+
+  private:
+    std::size_t index(std::size_t i) const {
+        const std::size_t at = i * indices->stride;
+        switch (indices->component_type) {
+            case type_byte:
+                return indices->bytes[at];
+            case type_short:
+                return number_at<std::uint16_t>(indices->bytes, at);
+            case type_int:
+                return number_at<std::uint32_t>(indices->bytes, at);
+            default:
+                throw MalformedBytes("has indices that are not whole numbers");
+        }
+    }
+};
+
 class GlbScene {
   public:
     GlbScene(const Chunks& chunks, std::size_t file_bytes)
@@ -114,6 +141,7 @@ class GlbScene {
 
     ReadMesh read() {
         walk();
+        apply_factors();
         for (glm::dvec3& v : read_.mesh.vertices) v = {v.x, 0 - v.z, v.y};
         for (glm::vec3& n : read_.looks.normals) n = {n.x, 0 - n.z, n.y};
         read_reference();
@@ -194,10 +222,8 @@ class GlbScene {
         const std::size_t vertices =
             add_vertices(accessor(whole(primitive.at("attributes"), "POSITION"), "VEC3", 3), scene_from_node);
         add_looks(primitive, vertices, scene_from_node);
-        std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
-        for (std::uint32_t& corner : corners) corner += static_cast<std::uint32_t>(base);
         const bool mirrored = glm::determinant(glm::dmat3(scene_from_node)) < 0;
-        add_triangles(corners, mode, mirrored);
+        add_triangles(corners_of(primitive, vertices, base), mode, mirrored);
     }
 
     // Small files of many instances would else take for ever.
@@ -211,6 +237,7 @@ class GlbScene {
         auto& vertices = read_.mesh.vertices;
         if (vertices.size() + positions.count > std::min<std::size_t>(file_bytes_, strip_restart))
             throw MalformedBytes("repeats its parts too often");
+        if (vertices.empty()) vertices.reserve(positions.count);
         for (std::size_t i = 0; i < positions.count; ++i) {
             const auto p = number_at<std::array<float, 3>>(positions.bytes, i * positions.stride);
             vertices.push_back(scene_from_node * glm::dvec4(p[0], p[1], p[2], 1));
@@ -240,7 +267,35 @@ class GlbScene {
             const Accessor colors = accessor(index, numbers == 3 ? "VEC3" : "VEC4", static_cast<std::size_t>(numbers));
             append(looks.colors, colors, vertices, numbers);
         }
+        factors_.emplace_back(vertices, factor_of(primitive));
         if (looks.picture.empty()) read_picture(primitive);
+    }
+
+    // 3.9.2: the base colour of its material, which is 1 if it says none.
+    glm::vec4 factor_of(const Json& primitive) const {
+        glm::vec4 color(1);
+        if (!primitive.contains("material")) return color;
+        const Json factor = json_.at("materials")
+                                .at(whole(primitive, "material"))
+                                .value("/pbrMetallicRoughness/baseColorFactor"_json_pointer, Json());
+        if (factor.is_array() && factor.size() == 4)
+            for (int k = 0; k < 4; ++k) color[k] = factor[static_cast<std::size_t>(k)].get<float>();
+        return color;
+    }
+
+    void apply_factors() {
+        MeshLooks& looks = read_.looks;
+        if (factors_.empty()) return;
+        const auto same = [&](const auto& part) { return part.second == factors_.front().second; };
+        if (std::ranges::all_of(factors_, same)) {
+            looks.base_color = factors_.front().second;
+            return;
+        }
+        if (looks.colors.size() != read_.mesh.vertices.size())
+            looks.colors.assign(read_.mesh.vertices.size(), glm::vec4(1));
+        auto color = looks.colors.begin();
+        for (const auto& [vertices, factor] : factors_)
+            for (std::size_t i = 0; i < vertices; ++i) *color++ *= factor;
     }
 
     // Floats, or shares of the largest whole number. What is not given is 1.
@@ -249,6 +304,7 @@ class GlbScene {
         if (a.count != vertices) throw MalformedBytes("an attribute has not one element a vertex");
         if (a.component_type != type_float && a.component_type != type_byte && a.component_type != type_short)
             throw MalformedBytes("an attribute has numbers of an unknown type");
+        if (out.empty()) out.reserve(vertices);
         for (std::size_t i = 0; i < vertices; ++i) {
             Vector v(1);
             for (int k = 0; k < numbers; ++k) {
@@ -262,15 +318,12 @@ class GlbScene {
         }
     }
 
-    // The base colour of its material, if it is in the file.
+    // The picture of its material, if it is in the file.
     void read_picture(const Json& primitive) {
         if (!primitive.contains("material")) return;
         const Json& material = json_.at("materials").at(whole(primitive, "material"));
         const Json pointer = material.value("/pbrMetallicRoughness/baseColorTexture"_json_pointer, Json());
         if (!pointer.is_object()) return;
-        const Json factor = material.value("/pbrMetallicRoughness/baseColorFactor"_json_pointer, Json());
-        if (factor.is_array() && factor.size() == 4)
-            for (int k = 0; k < 4; ++k) read_.looks.base_color[k] = factor[static_cast<std::size_t>(k)].get<float>();
         const Json& texture = json_.at("textures").at(whole(pointer, "index"));
         if (!texture.contains("source")) return;
         const Json& image = json_.at("images").at(whole(texture, "source"));
@@ -282,51 +335,32 @@ class GlbScene {
         read_.looks.picture.assign(reinterpret_cast<const char*>(binary_.data()) + offset, length);
     }
 
-    std::vector<std::uint32_t> corners_of(const Json& primitive, std::size_t vertices) {
-        std::vector<std::uint32_t> corners;
-        if (!primitive.contains("indices")) {
-            count_corners(vertices);
-            for (std::uint32_t i = 0; i < vertices; ++i) corners.push_back(i);
-            return corners;
+    Corners corners_of(const Json& primitive, std::size_t vertices, std::size_t base) {
+        Corners corners{{}, vertices, vertices, base};
+        if (primitive.contains("indices")) {
+            corners.indices = accessor(whole(primitive, "indices"), "SCALAR", 1);
+            corners.count = corners.indices->count;
         }
-        const Accessor indices = accessor(whole(primitive, "indices"), "SCALAR", 1);
-        count_corners(indices.count);
-        corners.reserve(indices.count);
-        for (std::size_t i = 0; i < indices.count; ++i) {
-            const std::size_t at = i * indices.stride;
-            switch (indices.component_type) {
-                case type_byte:
-                    corners.push_back(indices.bytes[at]);
-                    break;
-                case type_short:
-                    corners.push_back(number_at<std::uint16_t>(indices.bytes, at));
-                    break;
-                case type_int:
-                    corners.push_back(number_at<std::uint32_t>(indices.bytes, at));
-                    break;
-                default:
-                    throw MalformedBytes("has indices that are not whole numbers");
-            }
-            if (corners.back() >= vertices) throw MalformedBytes("a triangle has no vertex");
-        }
+        count_corners(corners.count);
         return corners;
     }
 
     // 3.7.2.1. A strip's triangle with two equal corners only turns it.
-    void add_triangles(const std::vector<std::uint32_t>& corners, std::size_t mode, bool mirrored) {
+    void add_triangles(const Corners& corners, std::size_t mode, bool mirrored) {
         auto& triangles = read_.mesh.triangles;
         const std::size_t before = triangles.size();
         if (mode == 4) {
-            for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+            if (before == 0) triangles.reserve(corners.count / 3);
+            for (std::size_t i = 0; i + 2 < corners.count; i += 3)
                 triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
         } else if (mode == 5) {
-            for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
+            for (std::size_t i = 0; i + 2 < corners.count; ++i) {
                 const std::uint32_t a = corners[i], b = corners[i + 1 + i % 2], c = corners[i + 2 - i % 2];
                 if (a != b && b != c && c != a) triangles.push_back({a, b, c});
             }
         } else {
             PolygonFan fan(triangles);
-            for (const std::uint32_t corner : corners) fan.add(corner);
+            for (std::size_t i = 0; i < corners.count; ++i) fan.add(corners[i]);
         }
         if (!mirrored) return;
         for (std::size_t i = before; i < triangles.size(); ++i) std::swap(triangles[i][1], triangles[i][2]);
@@ -355,6 +389,7 @@ class GlbScene {
     const std::size_t file_bytes_;
     std::size_t corners_ = 0;  ///< met so far, and one for each primitive
     ReadMesh read_;
+    std::vector<std::pair<std::size_t, glm::vec4>> factors_;  ///< of so many vertices each, in order
 };
 
 }  // namespace

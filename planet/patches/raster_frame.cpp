@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "planet/error.h"
-#include "planet/geodesy/utm.h"
 
 namespace planet {
 
@@ -63,6 +62,7 @@ void RasterFrame::set_local_frame() {
         zone_ = utm.zone;
         north_ = utm.north;
         reference_.crs = "EPSG:" + std::to_string(epsg_from_utm_zone(zone_, north_));
+        set_parallels();
         return;
     }
     set_graticule();
@@ -88,20 +88,27 @@ void RasterFrame::geodetic(std::span<const glm::dvec2> at, std::span<glm::dvec2>
 
 void RasterFrame::place_in_utm(std::span<const glm::dvec2> at, std::span<const double> height,
                                std::span<glm::dvec3> position, std::span<glm::vec3> up) const {
-    std::vector<glm::dvec2> places(at.size());
-    geodetic(at, places);
-    for (std::size_t i = 0; i < at.size(); ++i)
-        position[i] =
-            in_utm(std::clamp(places[i].y, -90.0, 90.0) * degrees, places[i].x * degrees, exaggeration_ * height[i]);
+    std::vector<glm::dvec2> places;
+    if (!parallels_) {
+        places.resize(at.size());
+        geodetic(at, places);
+    }
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const UtmParallels::Place p = parallels_ ? on_parallel(at[i]) : in_utm(places[i]);
+        position[i] = {p.easting, p.northing, exaggeration_ * height[i]};
+    }
     std::fill(up.begin(), up.end(), glm::vec3(0, 0, 1));
 }
 
-glm::dvec3 RasterFrame::in_utm(double latitude, double longitude, double height) const try {
-    const Utm utm = utm_from_geodetic({latitude, longitude, {}}, zone_);
-    const double other = utm.north == north_ ? 0 : north_ ? -1e7 : 1e7;  // northings run on across the equator
-    return {utm.easting, utm.northing + other, height};
-} catch (const Error&) {
-    return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+UtmParallels::Place RasterFrame::on_parallel(const glm::dvec2& at) const {
+    const glm::dvec2 p = at + first_;
+    if (is_sample(at)) return parallels_->at(static_cast<int>(p.x), static_cast<int>(p.y));
+    return in_utm(raster_->grid.crs_from_sample(p));
+}
+
+UtmParallels::Place RasterFrame::in_utm(const glm::dvec2& degrees_east_north) const {
+    return utm_place(std::clamp(degrees_east_north.y, -90.0, 90.0) * degrees, degrees_east_north.x * degrees, zone_,
+                     north_);
 }
 
 RasterFrame::Longitude RasterFrame::longitude_of(double degrees_east) {
@@ -116,22 +123,41 @@ RasterFrame::Latitude RasterFrame::latitude_of(double degrees_north) {
     return {radians, c, s, a2 / w, b2 / w};
 }
 
+bool RasterFrame::is_graticule() const {
+    return raster_->geographic() && raster_->grid.per_column.y == 0 && raster_->grid.per_row.x == 0;
+}
+
 void RasterFrame::set_graticule() {
+    if (!is_graticule()) return;
     const SampleGrid& grid = raster_->grid;
-    if (!raster_->geographic() || grid.per_column.y != 0 || grid.per_row.x != 0) return;
     auto graticule = std::make_shared<Graticule>();
     for (int x = 0; x < raster_->width; ++x) graticule->column.push_back(longitude_of(grid.crs_from_sample({x, 0}).x));
     for (int y = 0; y < raster_->height; ++y) graticule->row.push_back(latitude_of(grid.crs_from_sample({0, y}).y));
     graticule_ = std::move(graticule);
 }
 
+void RasterFrame::set_parallels() {
+    if (!is_graticule()) return;
+    const SampleGrid& grid = raster_->grid;
+    std::vector<double> latitudes;
+    for (int y = 0; y < raster_->height; ++y)
+        latitudes.push_back(std::clamp(grid.crs_from_sample({0, y}).y, -90.0, 90.0) * degrees);
+    const UtmParallels::Columns columns{grid.crs_from_sample({0, 0}).x * degrees, grid.per_column.x * degrees,
+                                        raster_->width};
+    if (auto found = UtmParallels::make(zone_, north_, columns, latitudes))
+        parallels_ = std::make_shared<const UtmParallels>(std::move(*found));
+}
+
+// Not between samples, and not beyond the raster.
+bool RasterFrame::is_sample(const glm::dvec2& at) const {
+    const glm::dvec2 p = at + first_;
+    return (p.x >= 0) & (p.y >= 0) & (p.x <= raster_->width - 1) & (p.y <= raster_->height - 1) &
+           (p.x == std::floor(p.x)) & (p.y == std::floor(p.y));
+}
+
 bool RasterFrame::all_in_graticule(std::span<const glm::dvec2> at) const {
-    if (!graticule_) return false;
-    const glm::dvec2 low = -first_, high = glm::dvec2(raster_->width - 1, raster_->height - 1) - first_;
-    bool all = true;
-    for (const glm::dvec2 p : at)
-        all &= (p.x >= low.x) & (p.y >= low.y) & (p.x <= high.x) & (p.y <= high.y) & (p.x == std::floor(p.x)) &
-               (p.y == std::floor(p.y));
+    bool all = graticule_ != nullptr;
+    for (const glm::dvec2& p : at) all &= is_sample(p);
     return all;
 }
 

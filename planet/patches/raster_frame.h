@@ -10,6 +10,7 @@
 #include "planet/elevation/raster.h"
 #include "planet/geodesy/geoid.h"
 #include "planet/geodesy/local_frame.h"
+#include "planet/geodesy/utm_parallels.h"
 #include "planet/mesh/surface_mesh.h"
 
 namespace planet {
@@ -65,10 +66,14 @@ class RasterFrame {
     };
 
     void set_local_frame();
+    bool is_graticule() const;
     void set_graticule();
+    void set_parallels();
+    bool is_sample(const glm::dvec2& at) const;
     static Longitude longitude_of(double degrees_east);
     static Latitude latitude_of(double degrees_north);
-    glm::dvec3 in_utm(double latitude, double longitude, double height) const;
+    UtmParallels::Place on_parallel(const glm::dvec2& at) const;
+    UtmParallels::Place in_utm(const glm::dvec2& degrees_east_north) const;
     void place_in_utm(std::span<const glm::dvec2> at, std::span<const double> height, std::span<glm::dvec3> position,
                       std::span<glm::vec3> up) const;
     void geodetic(std::span<const glm::dvec2> at, std::span<glm::dvec2> longitude_latitude) const;
@@ -87,7 +92,8 @@ class RasterFrame {
     glm::dvec2 first_{0};  ///< of the window
     bool affine_;
     LocalFrame local_{wgs84, Geodetic{}};
-    std::shared_ptr<const Graticule> graticule_;  ///< may be null
+    std::shared_ptr<const Graticule> graticule_;     ///< may be null
+    std::shared_ptr<const UtmParallels> parallels_;  ///< of a graticule in utm; may be null
     int zone_ = 0;
     bool north_ = true;
 };

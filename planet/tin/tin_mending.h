@@ -2,37 +2,26 @@
 // More samples for a TIN that is made, however it was: as one, or in tiles. Only the triangles around them change.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "planet/tin/delaunay.h"
 #include "planet/tin/height_grid.h"
 #include "planet/tin/tin_mesh.h"
+#include "planet/tin/written_tin.h"
 
 namespace planet {
 
-/// Triangles keep their numbers, those that change too; new ones come after them, and so do vertices.
-/// Made anew from its vertices, a mesh gets other diagonals wherever four of them lie on a circle and where tiles met; each
-/// of those may be too far off in turn.
-class TinMending {
-  public:
-    explicit TinMending(TinMesh mesh);
-
-    /// @param triangle that holds the sample, on a side or within, but at no corner
-    /// @return false, and nothing is done, if the triangle has changed since take_changed(): it should be measured first
-    bool insert(glm::ivec2 sample, std::uint32_t triangle);
-
-    /// Triangles that have changed or are new since the last call, ascending.
-    std::vector<std::uint32_t> take_changed();
-
-    /// @param grid whose heights the vertices get
-    TinMesh mesh(const HeightGrid& grid) const;
-
-  private:
-    void hold(const std::vector<std::array<glm::ivec2, 2>>& sides);
-
-    Delaunay mesh_;
-    std::vector<std::uint32_t> changed_;
-    std::vector<std::uint8_t> has_changed_;  ///< by triangle
+struct MendedTin {
+    std::size_t inserted = 0;            ///< samples
+    std::vector<std::uint32_t> changed;  ///< triangles that have changed or are new, ascending
 };
+
+/// Puts the samples of triangles in. Triangles keep their numbers, those that change too; new ones come after them, and so
+/// do vertices. A sample is left out if its triangle has changed for one before it: it should be measured first.
+/// Made anew from its vertices, a mesh gets other diagonals wherever four of them lie on a circle and where tiles met; each
+/// of those may be too far off in turn. So only what is around the samples is linked, some thousands of them at a time.
+/// @param grid whose heights the vertices get @param due ascending by triangle; each sample in its triangle, on a side or
+/// within, but at no corner
+MendedTin mend(TinMesh& mesh, const HeightGrid& grid, std::span<const FarTriangle> due);
 
 }  // namespace planet

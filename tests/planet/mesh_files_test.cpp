@@ -19,7 +19,9 @@ using testing::Glb;
 using testing::mesh_from_bytes;
 using testing::number_at;
 using testing::reference_of;
+using testing::TemporaryFolder;
 using testing::wavy_mesh;
+using testing::write_bytes;
 
 constexpr MeshFormat all_formats[]{MeshFormat::glb, MeshFormat::ply, MeshFormat::obj, MeshFormat::stl};
 
@@ -361,6 +363,30 @@ void expect_equal_borders(const SurfaceMesh& west, const SurfaceMesh& east, std:
         const std::size_t at = y * (west_n + 1) + west_n, beside = y * (east_n + 1);
         EXPECT_EQ(a.vertex(at), b.vertex(beside));
         EXPECT_EQ(west.vertices[at], east.vertices[beside]);
+    }
+}
+
+TEST(MeshFile, HoldsAMeshToTheBit) {
+    const TemporaryFolder folder;
+    for (const MeshFormat format : all_formats) {
+        SurfaceMesh mesh = wavy_mesh(9, 100);
+        round_to_format(mesh, enu_reference(), format);
+        const std::string bytes = bytes_of_mesh(mesh, enu_reference(), format), path = folder / "mesh";
+        const auto holds = [&](const SurfaceMesh& expected) { return file_holds(path, format, expected); };
+        write_bytes(path, bytes);
+        EXPECT_TRUE(holds(mesh));
+        SurfaceMesh moved = mesh, fewer = mesh, turned = mesh;
+        moved.vertices.back().z = std::nextafter(moved.vertices.back().z, 1e9);
+        fewer.triangles.pop_back();
+        std::swap(turned.triangles[3][0], turned.triangles[3][1]);
+        EXPECT_FALSE(holds(moved));
+        EXPECT_FALSE(holds(fewer));
+        EXPECT_FALSE(holds(turned));
+        if (format != MeshFormat::stl) continue;
+        for (const std::string& damaged : {bytes.substr(0, bytes.size() - 1), bytes + "x", std::string()}) {
+            write_bytes(path, damaged);
+            EXPECT_FALSE(holds(mesh));
+        }
     }
 }
 

@@ -5,8 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
+#include <optional>
 
+#include "planet/tin/delaunay.h"
 #include "planet/tin/make_tin.h"
 #include "planet/tin/tin_solid.h"
 #include "tin_rasters.h"
@@ -43,6 +44,16 @@ std::uint32_t triangle_of(const TinMesh& mesh, glm::ivec2 p) {
     return 0;
 }
 
+// Puts samples in one by one, each into the triangle that holds it. @return how many
+std::size_t mend_each(TinMesh& mesh, const HeightGrid& grid, const std::vector<glm::ivec2>& samples) {
+    std::size_t inserted = 0;
+    for (const glm::ivec2 p : samples) {
+        const FarTriangle far{triangle_of(mesh, p), p, 0};
+        inserted += mend(mesh, grid, {&far, 1}).inserted;
+    }
+    return inserted;
+}
+
 bool has_vertex(const TinMesh& mesh, glm::ivec2 p) {
     return std::ranges::find(mesh.vertices, p) != mesh.vertices.end();
 }
@@ -63,69 +74,110 @@ std::vector<glm::ivec2> some_samples(const TinMesh& mesh, const HeightGrid& grid
     return found;
 }
 
+// A sample within a triangle, on none of its sides.
+std::optional<glm::ivec2> inner_sample(const TinMesh& mesh, std::uint32_t triangle) {
+    const auto [a, b, c] = mesh.triangles[triangle];
+    const glm::ivec2 p = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+    for (const auto& [u, v] : {std::pair{a, b}, {b, c}, {c, a}})
+        if (orientation(mesh.vertices[u], mesh.vertices[v], p) <= 0) return std::nullopt;
+    return p;
+}
+
+// Sides that Delaunay's rule would not have.
+std::size_t doubted_sides(const TinMesh& mesh) {
+    const Delaunay linked(mesh.vertices, mesh.triangles);
+    std::size_t sides = 0;
+    for (Delaunay::Index e = 0; e < 3 * linked.triangle_slots(); ++e) sides += linked.constrained(e);
+    return sides / 2;
+}
+
 TEST(TinMending, ChangesOnlyWhatIsAroundASample) {
     const HeightGrid grid = rough_grid(400, 300);
     const TinMesh mesh = tiled_tin(grid, {.tolerance = 40}, 64);
-    TinMending mending(mesh);
-    const TinMesh same = mending.mesh(grid);
-    EXPECT_EQ(same.vertices, mesh.vertices);
-    EXPECT_EQ(same.triangles, mesh.triangles);
+    TinMesh mended = mesh;
+    EXPECT_TRUE(mend(mended, grid, {}).changed.empty());
+    EXPECT_EQ(mended.vertices, mesh.vertices);
+    EXPECT_EQ(mended.triangles, mesh.triangles);
     const std::vector<glm::ivec2> samples = some_samples(mesh, grid);
     ASSERT_GT(samples.size(), 50u);
     for (const glm::ivec2 p : samples) {
-        const TinMesh before = mending.mesh(grid);
-        ASSERT_TRUE(mending.insert(p, triangle_of(before, p)));
-        const TinMesh after = mending.mesh(grid);
-        const std::vector<std::uint32_t> changed = mending.take_changed();
-        EXPECT_TRUE(std::ranges::is_sorted(changed));
-        EXPECT_LT(changed.size(), 60u);
-        EXPECT_TRUE(has_vertex(after, p));
-        for (std::uint32_t t = 0; t < after.triangles.size(); ++t) {
-            const bool known = t < before.triangles.size() && corners(before, t) == corners(after, t);
-            EXPECT_EQ(known, !std::ranges::binary_search(changed, t));
+        const TinMesh before = mended;
+        const FarTriangle far{triangle_of(before, p), p, 0};
+        const MendedTin done = mend(mended, grid, {&far, 1});
+        ASSERT_EQ(done.inserted, 1u);
+        EXPECT_TRUE(std::ranges::is_sorted(done.changed));
+        EXPECT_LT(done.changed.size(), 60u);
+        EXPECT_TRUE(has_vertex(mended, p));
+        for (std::uint32_t t = 0; t < mended.triangles.size(); ++t) {
+            const bool known = t < before.triangles.size() && corners(before, t) == corners(mended, t);
+            EXPECT_EQ(known, !std::ranges::binary_search(done.changed, t));
         }
     }
-    const TinMesh mended = mending.mesh(grid);
     EXPECT_TRUE(sound(mended));
     EXPECT_EQ(doubled_area(mended), 2 * 399 * 299);
     EXPECT_EQ(mended.vertices.size(), mesh.vertices.size() + samples.size());
+    for (std::size_t v = 0; v < mended.vertices.size(); ++v) EXPECT_EQ(mended.height[v], grid.at(mended.vertices[v]));
+}
+
+// The cavity of a sample seldom reaches beyond what is linked: by Delaunay's rule all the same.
+TEST(TinMending, KeepsATriangulationDelaunay) {
+    const HeightGrid grid = rough_grid(300, 300);
+    TinMesh mended = make_tin(grid, {.tolerance = 60, .max_triangles = 20000}).mesh;  // as one
+    const std::size_t before = doubted_sides(mended);
+    EXPECT_EQ(before, 0u);
+    EXPECT_GT(mend_each(mended, grid, some_samples(mended, grid)), 50u);
+    EXPECT_EQ(doubted_sides(mended), 0u);
+}
+
+// More than are put in at a time, all at once: every triangle has a sample, and few are left out.
+TEST(TinMending, TakesManySamples) {
+    const HeightGrid grid = rough_grid(500, 400);
+    TinMesh mesh = tiled_tin(grid, {.tolerance = 30}, 64);
+    std::vector<FarTriangle> due;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        if (const auto inner = inner_sample(mesh, t)) due.push_back({t, *inner, 0});
+    ASSERT_GT(due.size(), 3000u);
+    const TinMesh before = mesh;
+    const MendedTin done = mend(mesh, grid, due);
+    EXPECT_GT(4 * done.inserted, due.size());
+    EXPECT_LT(done.inserted, due.size()) << "none is put into a triangle that has changed";
+    EXPECT_EQ(mesh.vertices.size(), before.vertices.size() + done.inserted);
+    EXPECT_EQ(mesh.triangles.size(), before.triangles.size() + 2 * done.inserted);
+    EXPECT_TRUE(sound(mesh));
+    EXPECT_EQ(doubled_area(mesh), 2 * 499 * 399);
+    EXPECT_TRUE(std::ranges::is_sorted(done.changed));
+    EXPECT_EQ(std::ranges::adjacent_find(done.changed), done.changed.end());
 }
 
 TEST(TinMending, LeavesATriangleThatHasChangedToBeMeasured) {
     const HeightGrid grid = rough_grid(40, 30);
-    TinMending mending(tiled_tin(grid, {.tolerance = 1e6}, 64));
-    const TinMesh mesh = mending.mesh(grid);
+    TinMesh mesh = tiled_tin(grid, {.tolerance = 1e6}, 64);
     ASSERT_EQ(mesh.triangles.size(), 2u);
     const std::uint32_t t = triangle_of(mesh, {30, 10});
-    EXPECT_TRUE(mending.insert({30, 10}, t));
-    EXPECT_FALSE(mending.insert({31, 11}, t));
-    EXPECT_EQ(mending.mesh(grid).vertices.size(), 5u);
-    mending.take_changed();
-    EXPECT_TRUE(mending.insert({31, 11}, triangle_of(mending.mesh(grid), {31, 11})));
+    const std::array<FarTriangle, 2> both{{{t, {30, 10}, 0}, {t, {31, 11}, 0}}};
+    EXPECT_EQ(mend(mesh, grid, both).inserted, 1u);
+    EXPECT_EQ(mesh.vertices.size(), 5u);
+    EXPECT_EQ(mend_each(mesh, grid, {{31, 11}}), 1u);
 }
 
 // A line stays although no circle would have it, divided where a sample on it goes in.
 TEST(TinMending, KeepsWhatFeaturesHold) {
     const HeightGrid grid = rough_grid(300, 290);
-    const TinMesh mesh = make_tin(grid, {.tolerance = 150, .features = {{}, {{{3, 3}, {283, 143}}}}}).mesh;
+    TinMesh mesh = make_tin(grid, {.tolerance = 150, .features = {{}, {{{3, 3}, {283, 143}}}}}).mesh;
     ASSERT_FALSE(mesh.held_sides.empty());
-    TinMending mending(mesh);
     for (int x = 9; x < 280; x += 6)
         for (const int off : {-1, 0, 1}) {
             const glm::ivec2 p(x, 3 + (x - 3) / 2 + off);
-            const TinMesh now = mending.mesh(grid);
-            if (!has_vertex(now, p)) mending.insert(p, triangle_of(now, p));
-            mending.take_changed();
+            if (!has_vertex(mesh, p)) mend_each(mesh, grid, {p});
         }
-    const TinMesh mended = mending.mesh(grid);
-    EXPECT_TRUE(sound(mended));
+    EXPECT_TRUE(sound(mesh));
     std::vector<glm::ivec2> on_line;
-    for (const glm::ivec2 p : mended.vertices)
+    for (const glm::ivec2 p : mesh.vertices)
         if (orientation({3, 3}, {283, 143}, p) == 0 && p.x >= 3 && p.x <= 283) on_line.push_back(p);
     std::ranges::sort(on_line, {}, [](glm::ivec2 p) { return p.x; });
     EXPECT_GT(on_line.size(), 40u);
-    for (std::size_t i = 1; i < on_line.size(); ++i) EXPECT_TRUE(has_side(mended, on_line[i - 1], on_line[i]));
-    EXPECT_EQ(mended.held_sides.size() + 1, on_line.size()) << "held still";
+    for (std::size_t i = 1; i < on_line.size(); ++i) EXPECT_TRUE(has_side(mesh, on_line[i - 1], on_line[i]));
+    EXPECT_EQ(mesh.held_sides.size() + 1, on_line.size()) << "held still";
 }
 
 TEST(TinMending, LeavesHolesAsTheyAre) {
@@ -144,20 +196,13 @@ TEST(TinMending, LeavesHolesAsTheyAre) {
         if (!solid) {
             EXPECT_TRUE(sound(mesh, &border));
         }
-        TinMending mending(mesh);
-        std::size_t inside = 0;
-        for (const glm::ivec2 p : some_samples(mesh, grid)) {
-            const TinMesh now = mending.mesh(grid);
-            inside += mending.insert(p, triangle_of(now, p));
-            mending.take_changed();
-        }
-        EXPECT_GT(inside, 5u);
-        const TinMesh mended = mending.mesh(grid);
-        EXPECT_EQ(doubled_area(mended), area);
+        const std::size_t voids = brute_deviation(mesh, grid).voids;
+        EXPECT_GT(mend_each(mesh, grid, some_samples(mesh, grid)), 5u);
+        EXPECT_EQ(doubled_area(mesh), area);
         if (solid) continue;  // whose holes touch in vertices of their own
-        EXPECT_TRUE(sound(mended, &border_after));
+        EXPECT_TRUE(sound(mesh, &border_after));
         EXPECT_GE(border_after, border);
-        EXPECT_EQ(brute_deviation(mended, grid).voids, brute_deviation(mesh, grid).voids);
+        EXPECT_EQ(brute_deviation(mesh, grid).voids, voids);
     }
 }
 

@@ -146,12 +146,12 @@ TEST(TinWritten, IsMeasuredAgainWhereItHasChanged) {
         measure.measure(mesh, surface_from_tin(mesh, *grid, frame).vertices);
         const std::vector<FarTriangle> due = measure.found().too_far;
         ASSERT_GT(due.size(), 10u);
-        TinMending mending(mesh);
-        for (const FarTriangle& far : due)
-            if (far.triangle % 7 == 0) mending.insert(far.sample, far.triangle);
-        mesh = mending.mesh(*grid);
+        std::vector<FarTriangle> some;
+        std::ranges::copy_if(due, std::back_inserter(some),
+                             [](const FarTriangle& far) { return far.triangle % 7 == 0; });
+        const MendedTin mended = mend(mesh, *grid, some);
         const SurfaceMesh surface = surface_from_tin(mesh, *grid, frame);
-        measure.measure_again(mesh, surface.vertices, mending.take_changed());
+        measure.measure_again(mesh, surface.vertices, mended.changed);
         const WrittenDeviation all = measure_written(mesh, surface.vertices, *grid, frame, {.above = 5}),
                                again = measure.take();
         EXPECT_EQ(again.max, all.max);

@@ -146,9 +146,7 @@ double share_above_plane(const planet::RasterFrame& tangent, glm::ivec2 size) {
     tangent.place(at, heights, placed, up);
     double least = 1;
     for (const glm::vec3& u : up) least = std::min(least, static_cast<double>(u.z));
-    constexpr double spare =
-        5e-4;  // what the curves of parallels take in large triangles: of 20 m up to 9 mm were seen
-    return std::max(0.94, least - spare);
+    return std::max(0.94, least - curve_spare);
 }
 
 PlacedBox box_of_window(const planet::RasterFrame& frame, glm::ivec2 first, glm::ivec2 last, double lowest,

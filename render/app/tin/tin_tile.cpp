@@ -40,6 +40,8 @@ TileMaker::TileMaker(const TinCommand& command, const TinSource& source)
     if (curves(frame_)) {
         tangent_.emplace(source.tangent_frame());
         scale_ = command.exaggeration * share_above_plane(*tangent_, {tiling_.width(), tiling_.height()});
+    } else if (!frame_.affine()) {
+        scale_ = 1 - curve_spare;
     }
     if (command.drape) drape_.emplace(*command.drape);
 }

@@ -65,7 +65,7 @@ class TileMaker {
     const DrapeMap map_;
     std::optional<Drape> drape_;
 
-    double scale_ = 1;  ///< of the tolerance, for heights above a plane
+    double scale_ = 1;  ///< of the tolerance, in frames that are not affine
     double grid_step_ = 0;
     double rounding_ = 0;  ///< m: by how much the format moves the ground at most
     std::optional<TinFloor> floor_;

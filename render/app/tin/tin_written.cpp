@@ -88,16 +88,15 @@ class Certifier {
     }
 
     void mend(WrittenTin& tin, const std::vector<planet::FarTriangle>& due) {
-        if (!mending_) mending_.emplace(std::move(tin.mesh));
         tin.surface = {};
-        for (const planet::FarTriangle& far : due) tin.inserted += mending_->insert(far.sample, far.triangle);
-        tin.mesh = mending_->mesh(grid_);
+        const planet::MendedTin mended = planet::mend(tin.mesh, grid_, due);
+        tin.inserted += mended.inserted;
         const double step = tin.rounding.step;
         place(tin);
         if (tin.rounding.step != step)  // everything has moved
             measure_.measure(tin.mesh, tin.surface.vertices);
         else
-            measure_.measure_again(tin.mesh, tin.surface.vertices, mending_->take_changed());
+            measure_.measure_again(tin.mesh, tin.surface.vertices, mended.changed);
     }
 
     void place(WrittenTin& tin) const {
@@ -123,17 +122,7 @@ class Certifier {
     const RasterFrame& frame_;
     const TinGoal& goal_;
     planet::WrittenMeasure measure_;
-    std::optional<planet::TinMending> mending_;
 };
-
-void compare(const std::string& path, planet::MeshFormat format, const planet::SurfaceMesh& measured) {
-    const planet::SurfaceMesh found = planet::read_mesh(path, format);
-    bool same = found.triangles.size() == measured.triangles.size();
-    for (std::size_t i = 0; same && i < found.triangles.size(); ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-            same = same && found.vertices[found.triangles[i][k]] == measured.vertices[measured.triangles[i][k]];
-    if (!same) throw Error(Fault::check_failed, path, "does not hold what was measured");
-}
 
 }  // namespace
 
@@ -171,7 +160,9 @@ std::size_t write_checked(OutputFile& file, const WrittenTin& tin, const planet:
             file.append(block);
         },
         tin.surface, reference, format, tin.rounding, looks);
-    if (!file.temporary().empty()) compare(file.temporary().string(), format, tin.surface);
+    const std::string written = file.temporary().string();
+    if (!written.empty() && !planet::file_holds(written, format, tin.surface))
+        throw Error(Fault::check_failed, written, "does not hold what was measured");
     return bytes;
 }
 
