@@ -35,6 +35,8 @@ void check_is_same(const std::filesystem::path& path, const StoreMetadata& there
         if (s >= there.sources.size()) differ(path, "without " + name + text_of(now.sources[s]));
         if (!is_same(there.sources[s], now.sources[s]))
             differ(path, name + text_of(there.sources[s]) + ", not " + text_of(now.sources[s]));
+        if (there.format_version > 3 && there.sources[s].files != now.sources[s].files)
+            differ(path, name + text_of(there.sources[s]) + " of files of other names");
     }
     if (!(there.ellipsoid == now.ellipsoid))
         differ(path, "the planet " + to_string(there.ellipsoid) + ", not " + to_string(now.ellipsoid));

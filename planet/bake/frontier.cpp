@@ -56,7 +56,7 @@ std::vector<LocationCode> tiles_around(LocationCode root) {
 
 void Frontier::add(std::unique_ptr<FrontierTile> added) {
     FrontierTile& tile = *added;
-    height_bytes_ += tile.height.bytes();
+    height_bytes_ += tile.height.bytes() + tile.origins.bytes();
     tiles_.emplace(tile.root.bits(), std::move(added));
     meet_around(tile);
     meet_beside(tile);
@@ -169,7 +169,7 @@ void Frontier::finish(FrontierTile& tile) {
     const auto found = tiles_.find(tile.root.bits());
     final_.push_back(std::move(found->second));
     tiles_.erase(found);
-    height_bytes_ -= tile.height.bytes();
+    height_bytes_ -= tile.height.bytes() + tile.origins.bytes();
     if (!tile.inner) give_back(std::move(tile.records));
 }
 

@@ -42,7 +42,7 @@ struct InnerTile {
 
     /// What one takes, nearly.
     static constexpr std::size_t bytes = sizeof(TileRecords) + tile_cells * (1 + 4 * sizeof(float)) +
-                                         tile_vertices * (sizeof(float) + sizeof(GeoidUndulation)) + 1024;
+                                         tile_vertices * (sizeof(float) + sizeof(GeoidUndulation) + 2) + 1024;
 };
 
 /// A tile of the frontier. What is not marked otherwise belongs to the Frontier; a tile that is `busy` has been handed
@@ -54,6 +54,7 @@ struct FrontierTile {
     std::unique_ptr<InnerTile> inner;      ///< if it has tiles below
     PackedHeights height;                  ///< by vertex index; empty for inner tiles, which have their own
     std::vector<float> undulation;         ///< by vertex index, those that are not interpolated; at least the corners'
+    OriginPlane origins;                   ///< by vertex index; as the heights
     float resampling = 0;                  ///< Tile::resampling
     glm::vec3 split_position{0};           ///< of the root's split vertex, rounded
     std::unique_ptr<TileRecords> records;  ///< nothing: to be measured again
@@ -98,7 +99,7 @@ class Frontier {
     std::unique_ptr<FrontierTile> next_final();
 
     std::size_t size() const { return tiles_.size(); }
-    /// Of the heights of its tiles.
+    /// Of the heights of its tiles and their origins.
     std::size_t height_bytes() const { return height_bytes_; }
     /// How many tiles have records that could be dropped.
     std::size_t kept() const { return kept_.size(); }

@@ -99,6 +99,7 @@ std::unique_ptr<FrontierTile> TileMaker::measure(LocationCode root, InnerTile* a
         tile->resampling = resampling_.largest({scene_.field, scene_.scale.placement, tile_, lattice_, exists_}, {});
     });
     tile->height = PackedHeights(tile_.height, scene_.scale.quantum_m);
+    tile->origins = std::move(tile_.origins);
     const std::size_t own = std::max<std::size_t>(3, own_undulations(root, tile_.depth));
     if (scene_.scale.has_undulation) tile->undulation.reserve(own);
     for (std::size_t v = 0; scene_.scale.has_undulation && v < own; ++v)
@@ -177,6 +178,7 @@ void TileMaker::restore(const FrontierTile& tile) {
     tile_.depth = tile.depth;
     tile_.resampling = tile.resampling;
     tile.height.unpack(tile_.height);
+    tile_.origins = tile.origins;
     tile_.child_exists.reset();
     exists_.resize(std::size_t{1} << tile.depth);
     existence_.of_tile(tile.root, exists_);
@@ -194,31 +196,42 @@ Corners TileMaker::root_corners(LocationCode root) const {
     return child_corners(up, split_vertex(up), root.child_index());
 }
 
-// Normals, heights and undulations. The root's corners are vertices of the tile above: taken from there.
+// Normals, heights, where they are from, undulations. The root's corners are vertices of the tile above: taken from there.
 void TileMaker::sample(Tile& tile, InnerTile* above) {
     find_cells_above(tile.root, above);
     lattice_.set_normals(root_corners(tile.root), tile.depth);
     normals_.resize(lattice_.size());
     for (std::size_t v = 0; v < normals_.size(); ++v) normals_[v] = lattice_.normal(v);
     tile.height.resize(normals_.size());
-    scene_.field.heights(normals_, tile.height);
+    origins_.resize(normals_.size());
+    scene_.field.heights_with_origins(normals_, tile.height, origins_);
     quantize(tile.height);
     if (above) {
         const auto& corner = tile_layout().corners[scene_.plan.layers().local_above(tile.root)];
-        for (std::size_t v = 0; v < 3; ++v) tile.height[v] = above->tile.height[corner[v]];
+        for (std::size_t v = 0; v < 3; ++v) {
+            tile.height[v] = above->tile.height[corner[v]];
+            origins_[v].origin = above->tile.origins[corner[v]];
+        }
     }
+    tile.origins = OriginPlane(origins_);
     if (scene_.scale.has_undulation) sample_undulations(tile, above);
 }
 
-// To whole quanta; NaN is 0.
-void TileMaker::quantize(std::span<float> heights) const {
+// To whole quanta; NaN is 0, of no source.
+void TileMaker::quantize(std::span<float> heights) {
     const double quantum = scene_.scale.quantum_m, limit = static_cast<double>(largest_height_quanta);
-    bool fits = true;
+    bool fits = true, answered = true;
     for (float& height : heights) {
         const double quanta = std::nearbyint(static_cast<double>(height) / quantum);
         fits &= !(std::abs(quanta) > limit);
-        height = quanta == quanta ? static_cast<float>(quanta * quantum) : 0.0f;
+        answered &= quanta == quanta;
+        height = static_cast<float>(quanta * quantum);
     }
+    for (std::size_t v = 0; v < heights.size() && !answered; ++v)
+        if (std::isnan(heights[v])) {
+            heights[v] = 0;
+            origins_[v] = {};
+        }
     if (!fits) refuse_heights(heights);
 }
 

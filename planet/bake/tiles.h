@@ -64,7 +64,7 @@ class TileMaker {
 
     Corners root_corners(LocationCode root) const;
     void sample(Tile& tile, InnerTile* above);
-    void quantize(std::span<float> heights) const;
+    void quantize(std::span<float> heights);
     [[noreturn]] void refuse_heights(std::span<const float> heights) const;
     void sample_undulations(Tile& tile, const InnerTile* above);
     void find_lacks_below(LocationCode root, int depth);
@@ -93,6 +93,7 @@ class TileMaker {
     std::vector<std::uint8_t> lacks_below_;
     std::vector<float> deviation_, radius_;
     std::vector<glm::dvec3> normals_;
+    std::vector<WeighedOrigin> origins_;
     std::vector<GeoidUndulation> undulations_;
     std::vector<CellAbove> above_;  // by bisection level
     TileResampling resampling_;

@@ -25,8 +25,9 @@ Lanes weight(const Lanes& r, double reach) {
 
 struct BorderBlend::Places {
     Lanes x, y, z;
-    Lanes least = Lanes{} + 1;  // of distance / reach
-    Mask within{};              // reach of a point
+    Lanes least = Lanes{} + 1;            // of distance / reach
+    Lanes nearest = Lanes{} + 1, file{};  // the same, below 0 within the clearance, and that point's
+    Mask within{};                        // reach of a point
     Lanes weights{}, total{};
 
     Lanes from(const glm::dvec3& q) const {
@@ -50,10 +51,11 @@ void BorderBlend::build(int first, int count) {
     for (auto p = begin; p != end; ++p) {
         low = glm::min(low, p->normal);
         high = glm::max(high, p->normal);
-        node.centre += p->count * p->normal;
-        node.difference += p->count * p->difference;
-        node.reach += p->count * p->reach;
-        node.weight += p->count;
+        const auto points = static_cast<double>(p->count);
+        node.centre += points * p->normal;
+        node.difference += points * p->difference;
+        node.reach += points * p->reach;
+        node.weight += points;
         node.max_reach = std::max(node.max_reach, p->reach);
     }
     node.centre /= node.weight;
@@ -79,7 +81,12 @@ void BorderBlend::find_nearest(std::size_t index, Places& p) const {
     if (node.right == 0) {
         for (int i = node.first; i < node.first + node.count; ++i) {
             const Point& q = points_[static_cast<std::size_t>(i)];
-            p.least = smaller(larger(p.from(q.normal) - clearance_, Lanes{}) / q.reach, p.least);
+            const Lanes ratio = (p.from(q.normal) - clearance_) / q.reach;
+            p.least = smaller(larger(ratio, Lanes{}), p.least);
+            // Of equally near ones the first file's, so that the order of the visits does not matter.
+            const Lanes file = Lanes{} + static_cast<double>(q.file);
+            p.file = (ratio < p.nearest) | ((ratio == p.nearest) & (file < p.file)) ? file : p.file;
+            p.nearest = smaller(ratio, p.nearest);
         }
         return;
     }
@@ -106,7 +113,7 @@ void BorderBlend::gather(std::size_t index, Places& p) const {
     if (any(p.within) && node.right == 0) {
         for (int i = node.first; i < node.first + node.count; ++i) {
             const Point& q = points_[static_cast<std::size_t>(i)];
-            take(p.within, q.count * weight(p.from(q.normal), q.reach + clearance_), q.difference);
+            take(p.within, static_cast<double>(q.count) * weight(p.from(q.normal), q.reach + clearance_), q.difference);
         }
     } else if (any(p.within)) {
         gather(index + 1, p);
@@ -127,8 +134,9 @@ bool BorderBlend::may_reach(std::size_t index, const glm::dvec3& centre, double 
                        [&](const Point& q) { return glm::distance(centre, q.normal) < q.reach + beyond; });
 }
 
-void BorderBlend::add(std::span<const glm::dvec3> normals, std::span<double> corrections) const {
-    assert(corrections.size() == normals.size());
+void BorderBlend::add(std::span<const glm::dvec3> normals, std::span<double> corrections,
+                      std::span<BorderShare> shares) const {
+    assert(corrections.size() == normals.size() && (shares.empty() || shares.size() == normals.size()));
     constexpr std::size_t few = 32;
     if (nodes_.empty()) return;
     for (std::size_t first = 0; first < normals.size(); first += few) {
@@ -140,13 +148,15 @@ void BorderBlend::add(std::span<const glm::dvec3> normals, std::span<double> cor
         if (is_number && !may_reach(0, centre, std::sqrt(square) * (1 + 1e-9))) continue;
         for (std::size_t i = 0; i < some.size(); i += lane_count) {
             const std::size_t n = std::min(lane_count, some.size() - i);
-            add_some(some.subspan(i, n), corrections.subspan(first + i, n));
+            add_some(some.subspan(i, n), corrections.subspan(first + i, n),
+                     shares.empty() ? shares : shares.subspan(first + i, n));
         }
     }
 }
 
 // A NaN is within no reach.
-void BorderBlend::add_some(std::span<const glm::dvec3> normals, std::span<double> corrections) const {
+void BorderBlend::add_some(std::span<const glm::dvec3> normals, std::span<double> corrections,
+                           std::span<BorderShare> shares) const {
     const auto axis = [&](int k) {
         return gather_lanes([&](std::size_t w) { return normals[std::min(w, normals.size() - 1)][k]; });
     };
@@ -158,6 +168,8 @@ void BorderBlend::add_some(std::span<const glm::dvec3> normals, std::span<double
     const Lanes s = 1 - p.least;
     const Lanes correction = p.weights > 0 ? s * s * (3 - 2 * s) * p.total / p.weights : Lanes{};
     for (std::size_t w = 0; w < normals.size(); ++w) corrections[w] += correction[w];
+    for (std::size_t w = 0; w < shares.size(); ++w)
+        if (p.weights[w] > 0) shares[w] = {s[w] * s[w] * (3 - 2 * s[w]), static_cast<std::uint32_t>(p.file[w])};
 }
 
 double BorderBlend::operator()(const glm::dvec3& normal) const {

@@ -8,19 +8,27 @@
 // stays between the least and the greatest difference and 0. Clusters of points that appear under less than 1/4 count
 // as one.
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
 namespace planet {
 
+/// What a finer field has to say at a place outside of its border.
+struct BorderShare {
+    double weight = 0;       ///< 0..1: of the height there; the rest is the coarser field's
+    std::uint32_t file = 0;  ///< Point::file of the nearest point, by distance / reach
+};
+
 class BorderBlend {
   public:
     struct Point {
-        glm::dvec3 normal;  ///< unit
-        double difference;  ///< m
-        double reach;       ///< > 0, chord on the unit sphere
-        double count = 1;   ///< how many points it stands for
+        glm::dvec3 normal;       ///< unit
+        double difference;       ///< m
+        double reach;            ///< > 0, chord on the unit sphere
+        float count = 1;         ///< how many points it stands for
+        std::uint32_t file = 0;  ///< that the finer field's height is from (HeightOrigin)
     };
 
     BorderBlend() = default;
@@ -31,7 +39,9 @@ class BorderBlend {
     double operator()(const glm::dvec3& normal) const;
     /// Adds to each correction, in metres, that at a unit normal: the same bits, and much faster where neighbours in the
     /// span are so on the ground. Spans of the same size.
-    void add(std::span<const glm::dvec3> normals, std::span<double> corrections) const;
+    /// @param shares  filled in within reach, left alone elsewhere; may be empty
+    void add(std::span<const glm::dvec3> normals, std::span<double> corrections,
+             std::span<BorderShare> shares = {}) const;
 
     std::size_t bytes() const { return sizeof *this + points_.size() * sizeof(Point) + nodes_.size() * sizeof(Node); }
 
@@ -49,7 +59,8 @@ class BorderBlend {
 
     void build(int first, int count);
     bool may_reach(std::size_t node, const glm::dvec3& centre, double radius) const;
-    void add_some(std::span<const glm::dvec3> normals, std::span<double> corrections) const;
+    void add_some(std::span<const glm::dvec3> normals, std::span<double> corrections,
+                  std::span<BorderShare> shares) const;
     void find_nearest(std::size_t node, Places& places) const;
     void gather(std::size_t node, Places& places) const;
 

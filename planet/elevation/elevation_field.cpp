@@ -16,6 +16,21 @@ SampleArea::SampleArea(const Corners& cell) : cap(cap_of(cell)) {
         for (glm::dvec3& side : sides) side = -side;
 }
 
+std::vector<SourceFile> source_files(std::span<const SourceInfo> sources) {
+    std::vector<SourceFile> files;
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+        for (const std::string& name : sources[s].files) files.push_back({s, name});
+        if (sources[s].files.empty()) files.push_back({s, sources[s].name});
+    }
+    return files;
+}
+
+void ElevationField::heights_with_origins(std::span<const glm::dvec3> normals, std::span<float> out,
+                                          std::span<WeighedOrigin> origins) const {
+    heights(normals, out);
+    std::fill(origins.begin(), origins.end(), WeighedOrigin{{1, 1}, 1});
+}
+
 void ElevationField::sample_rows(const SampleArea& area, const SampleRowVisitor& visit) const {
     std::vector<glm::dvec3> normals;
     std::vector<float> heights;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "planet/elevation/height_origin.h"
 #include "planet/frames.h"
 #include "planet/octahedron/cap.h"
 
@@ -46,7 +47,18 @@ struct SourceInfo {
     VerticalDatum datum = VerticalDatum::egm96;
     double spacing_m = 0;        ///< sqrt(dx dy) of its samples on the ground at its centre; 0: as fine as you like
     bool datum_assumed = false;  ///< neither the file nor the user said so
+    /// Of a mosaic: the names of its files in the order of their numbers. Empty: `name` is the only one.
+    std::vector<std::string> files{};
 };
+
+/// A file of a source.
+struct SourceFile {
+    std::size_t source = 0;  ///< which of the sources
+    std::string name;
+};
+
+/// Of all sources, the one with number 1 (HeightOrigin::file) first.
+std::vector<SourceFile> source_files(std::span<const SourceInfo> sources);
 
 /// Implementations are immutable after construction and safe to read from several threads.
 class ElevationField {
@@ -58,6 +70,11 @@ class ElevationField {
     /// Heights in metres above datum() at unit geodetic normals; NaN where the field has no answer (outside, void).
     /// out.size() == normals.size().
     virtual void heights(std::span<const glm::dvec3> normals, std::span<float> out) const = 0;
+
+    /// The same heights, and the file of sources() that each came from; where there is no answer nothing is meant by it.
+    /// A field of one file need not override this.
+    virtual void heights_with_origins(std::span<const glm::dvec3> normals, std::span<float> out,
+                                      std::span<WeighedOrigin> origins) const;
 
     /// The least sample spacing in metres (sqrt(dx dy) on the ground) of any part of the field that meets the cap;
     /// infinity where it has no answer.

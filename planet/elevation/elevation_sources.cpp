@@ -77,8 +77,7 @@ class Opener {
         std::vector<std::shared_ptr<const ElevationField>> fields;
         if (options_.base) fields.push_back(options_.base);
         for (std::size_t i = 0; i < layers.size(); ++i) {
-            fields.push_back(in_memory_[i] ? whole_field(*mosaics[i], layers[i])
-                                           : blocked_field(mosaics[i], layers[i]));
+            fields.push_back(in_memory_[i] ? whole_field(mosaics[i], layers[i]) : blocked_field(mosaics[i], layers[i]));
             samples_done_ += static_cast<double>(mosaics[i]->header().count());
         }
         return std::make_shared<LayeredField>(std::move(fields), options_.datum, options_.geoid, options_.radius_m,
@@ -118,11 +117,17 @@ class Opener {
         return most;
     }
 
-    std::shared_ptr<const ElevationField> whole_field(const RasterMosaic& mosaic, const Layer& layer) const {
-        auto samples = std::make_shared<const WholeRaster>(std::make_shared<const Raster>(read_mosaic(mosaic)));
+    static std::shared_ptr<const RasterMosaic> if_of_files(const std::shared_ptr<const RasterMosaic>& mosaic) {
+        return mosaic->parts().size() > 1 ? mosaic : nullptr;
+    }
+
+    std::shared_ptr<const ElevationField> whole_field(const std::shared_ptr<const RasterMosaic>& mosaic,
+                                                      const Layer& layer) const {
+        auto samples = std::make_shared<const WholeRaster>(std::make_shared<const Raster>(read_mosaic(*mosaic)));
         tell(1, samples->header());
         RasterSurvey found = survey(*samples);
-        return std::make_shared<RasterField>(std::move(samples), std::move(found), layer.datum, layer.datum_assumed);
+        return std::make_shared<RasterField>(std::move(samples), std::move(found), layer.datum, layer.datum_assumed,
+                                             if_of_files(mosaic));
     }
 
     std::shared_ptr<const ElevationField> blocked_field(const std::shared_ptr<const RasterMosaic>& mosaic,
@@ -130,7 +135,7 @@ class Opener {
         auto samples = std::make_shared<const BlockedRaster>(
             mosaic, cache_, [&](double fraction) { tell(fraction, mosaic->header()); });
         const RasterSurvey& found = samples->survey();
-        return std::make_shared<RasterField>(samples, found, layer.datum, layer.datum_assumed);
+        return std::make_shared<RasterField>(samples, found, layer.datum, layer.datum_assumed, if_of_files(mosaic));
     }
 
     void tell(double fraction, const RasterHeader& raster) const {

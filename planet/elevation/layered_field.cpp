@@ -1,10 +1,12 @@
 #include "planet/elevation/layered_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "planet/error.h"
 
@@ -28,6 +30,9 @@ LayeredField::LayeredField(std::vector<std::shared_ptr<const ElevationField>> la
         if (layer->datum() != datum_ && !geoid_)
             throw Error(Fault::bad_usage, "elevation", "layers of different vertical datums need a geoid",
                         "all above egm96 or all above the ellipsoid, or a geoid grid");
+    first_file_.push_back(0);
+    for (const auto& layer : layers_)
+        first_file_.push_back(first_file_.back() + static_cast<std::uint32_t>(source_files(layer->sources()).size()));
     blends_.reserve(layers_.size());
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         reaches_.push_back(most_reach(i));
@@ -58,55 +63,155 @@ void LayeredField::heights(std::span<const glm::dvec3> normals, std::span<float>
     heights_of_lowest(layers_.size(), normals, out);
 }
 
-void LayeredField::heights_of_lowest(std::size_t count, std::span<const glm::dvec3> normals,
-                                     std::span<float> out) const {
+void LayeredField::heights_with_origins(std::span<const glm::dvec3> normals, std::span<float> out,
+                                        std::span<WeighedOrigin> origins) const {
+    assert(origins.size() == normals.size());
+    heights_of_lowest(layers_.size(), normals, out, origins);
+}
+
+void LayeredField::heights_of_layer(std::size_t layer, std::span<const glm::dvec3> normals, std::span<float> out,
+                                    std::span<WeighedOrigin> origins) const {
+    if (origins.empty()) {
+        layers_[layer]->heights(normals, out);
+    } else {
+        layers_[layer]->heights_with_origins(normals, out, origins);
+        const std::uint32_t below = first_file_[layer];
+        for (std::size_t i = 0; i < origins.size() && below > 0; ++i)
+            for (std::uint32_t* file : {&origins[i].origin.file, &origins[i].origin.other})
+                *file += *file > 0 ? below : 0;
+    }
+    to_common_datum(*layers_[layer], normals, out);
+}
+
+namespace {
+
+/// The two files with the greatest weights at a place, as they are found from the highest layer down.
+class OriginMix {
+  public:
+    /// @param weight  0..1, of what has none yet
+    void add(std::uint32_t file, double weight) {
+        take(file, left_ * weight);
+        left_ *= 1 - weight;
+    }
+    /// All that has none yet.
+    void end(const WeighedOrigin& origin) {
+        const auto weight = static_cast<double>(origin.weight);
+        take(origin.origin.file, left_ * weight);
+        if (origin.origin.blended()) take(origin.origin.other, left_ * (1 - weight));
+    }
+    WeighedOrigin origin() const {
+        const bool blended = most_[1].weight > 0;
+        return {{most_[0].file, most_[blended ? 1 : 0].file}, static_cast<float>(most_[0].weight)};
+    }
+
+  private:
+    void take(std::uint32_t file, double weight) {
+        BorderShare one{weight, file};
+        for (BorderShare& known : most_)
+            if (known.weight > 0 && known.file == file) one.weight += std::exchange(known.weight, 0);
+        // Of equal ones the first: what lies higher.
+        if (most_[1].weight > most_[0].weight) std::swap(most_[0], most_[1]);
+        if (one.weight > most_[0].weight) std::swap(one, most_[0]);
+        if (one.weight > most_[1].weight) most_[1] = one;
+    }
+    std::array<BorderShare, 2> most_{};
+    double left_ = 1;
+};
+
+}  // namespace
+
+/// Some thousands of places, from the highest layer down: those without an answer yet take along the corrections of the
+/// layers they have passed.
+class LayeredField::Piece {
+  public:
+    Piece(const LayeredField& field, std::span<const glm::dvec3> normals, std::span<float> out,
+          std::span<WeighedOrigin> origins)
+        : field_(field), normals_(normals), out_(out), origins_(origins) {}
+
+    void find(std::size_t count) {
+        ask_highest(count);
+        correction_.resize(left_.size());
+        mix_.resize(origins_.empty() ? 0 : left_.size());
+        for (std::size_t layer = count; layer-- > 0 && !left_.empty();) {
+            blend(layer);
+            if (layer > 0) ask(layer - 1);
+        }
+        for (std::size_t i = 0; i < left_.size(); ++i) {
+            const glm::dvec3& n = left_[i];
+            answer(i, std::isnan(n.x + n.y + n.z) ? nan : 0.0f, {});
+        }
+    }
+
+  private:
+    // It has most answers: without copies.
+    void ask_highest(std::size_t count) {
+        std::fill(out_.begin(), out_.end(), nan);
+        if (count > 0) field_.heights_of_layer(count - 1, normals_, out_, origins_);
+        for (std::size_t i = 0; i < normals_.size(); ++i) {
+            if (!std::isnan(out_[i])) continue;
+            left_.push_back(normals_[i]);
+            index_.push_back(i);
+        }
+    }
+
+    void blend(std::size_t layer) {
+        share_.assign(mix_.size(), {});
+        field_.blends_[layer].add(left_, correction_, share_);
+        for (std::size_t i = 0; i < mix_.size(); ++i)
+            if (share_[i].weight > 0) mix_[i].add(share_[i].file, share_[i].weight);
+    }
+
+    void ask(std::size_t layer) {
+        height_.resize(left_.size());
+        origin_.resize(mix_.size());
+        field_.heights_of_layer(layer, left_, height_, origin_);
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < left_.size(); ++i) {
+            if (!std::isnan(height_[i])) {
+                answer(i, height_[i], mix_.empty() ? WeighedOrigin{} : origin_[i]);
+                continue;
+            }
+            correction_[kept] = correction_[i];
+            left_[kept] = left_[i];
+            if (!mix_.empty()) mix_[kept] = mix_[i];
+            index_[kept++] = index_[i];
+        }
+        left_.resize(kept);
+        index_.resize(kept);
+        correction_.resize(kept);
+        if (!mix_.empty()) mix_.resize(kept);
+    }
+
+    void answer(std::size_t i, float height, const WeighedOrigin& origin) {
+        out_[index_[i]] = static_cast<float>(static_cast<double>(height) + correction_[i]);
+        if (mix_.empty()) return;
+        mix_[i].end(origin);
+        origins_[index_[i]] = mix_[i].origin();
+    }
+
+    const LayeredField& field_;
+    std::span<const glm::dvec3> normals_;
+    std::span<float> out_;
+    std::span<WeighedOrigin> origins_;  // empty: nobody asks
+    // Of the places without an answer; the last two only if somebody asks for origins.
+    std::vector<glm::dvec3> left_;
+    std::vector<std::size_t> index_;
+    std::vector<double> correction_;
+    std::vector<BorderShare> share_;
+    std::vector<OriginMix> mix_;
+    std::vector<float> height_;  // of one layer
+    std::vector<WeighedOrigin> origin_;
+};
+
+void LayeredField::heights_of_lowest(std::size_t count, std::span<const glm::dvec3> normals, std::span<float> out,
+                                     std::span<WeighedOrigin> origins) const {
     assert(out.size() == normals.size());
     for (std::size_t first = 0; first < normals.size(); first += piece) {
         const std::size_t n = std::min(piece, normals.size() - first);
-        heights_of_piece(count, normals.subspan(first, n), out.subspan(first, n));
+        Piece(*this, normals.subspan(first, n), out.subspan(first, n),
+              origins.empty() ? origins : origins.subspan(first, n))
+            .find(count);
     }
-}
-
-// From the highest layer down: who has no answer yet takes along the corrections of the layers it has passed.
-void LayeredField::heights_of_piece(std::size_t count, std::span<const glm::dvec3> normals,
-                                    std::span<float> out) const {
-    std::fill(out.begin(), out.end(), nan);
-    std::vector<glm::dvec3> left;
-    std::vector<std::size_t> index;
-    std::vector<double> correction;
-    std::vector<float> h;
-    if (count > 0) {  // the highest one has most answers: without copies
-        layers_[count - 1]->heights(normals, out);
-        to_common_datum(*layers_[count - 1], normals, out);
-    }
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        if (!std::isnan(out[i])) continue;
-        left.push_back(normals[i]);
-        index.push_back(i);
-    }
-    correction.resize(left.size());
-    for (std::size_t layer = count; layer-- > 0 && !left.empty();) {
-        blends_[layer].add(left, correction);
-        if (layer == 0) break;
-        h.resize(left.size());
-        layers_[layer - 1]->heights(left, h);
-        to_common_datum(*layers_[layer - 1], left, h);
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < left.size(); ++i) {
-            if (!std::isnan(h[i])) {
-                out[index[i]] = static_cast<float>(static_cast<double>(h[i]) + correction[i]);
-                continue;
-            }
-            correction[kept] = correction[i];
-            left[kept] = left[i];
-            index[kept++] = index[i];
-        }
-        left.resize(kept);
-        index.resize(kept);
-        correction.resize(kept);
-    }
-    for (std::size_t i = 0; i < left.size(); ++i)
-        out[index[i]] = std::isnan(left[i].x + left[i].y + left[i].z) ? nan : static_cast<float>(correction[i]);
 }
 
 double LayeredField::spacing_of_lowest(std::size_t count, const glm::dvec3& normal) const {
@@ -175,8 +280,8 @@ BorderBlend LayeredField::blend_of_region(std::size_t layer, const Cap& region, 
 BorderBlend LayeredField::blend_of(std::size_t layer, std::span<const glm::dvec3> normals, std::size_t single,
                                    std::size_t every) const {
     std::vector<float> fine(normals.size()), coarse(normals.size());
-    layers_[layer]->heights(normals, fine);
-    to_common_datum(*layers_[layer], normals, fine);
+    std::vector<WeighedOrigin> origins(normals.size());
+    heights_of_layer(layer, normals, fine, origins);
     heights_of_lowest(layer, normals, coarse);
 
     std::map<std::array<int, 3>, double> reaches;
@@ -187,7 +292,7 @@ BorderBlend LayeredField::blend_of(std::size_t layer, std::span<const glm::dvec3
         double& reach = reaches[{key.x, key.y, key.z}];
         if (reach == 0) reach = std::min(reach_around(layer, normals[i]), reaches_[layer]);
         points.push_back({normals[i], static_cast<double>(fine[i]) - static_cast<double>(coarse[i]), reach,
-                          i < single ? 1.0 : static_cast<double>(every)});
+                          i < single ? 1.0f : static_cast<float>(every), origins[i].origin.file});
     }
     // Border points lie half a sample apart along the border; corners are up to 0.36 of one from the nearest.
     double fine_spacing = std::numeric_limits<double>::infinity();

@@ -39,6 +39,10 @@ class LayeredField : public ElevationField {
     VerticalDatum datum() const override { return datum_; }
     /// Finite for every normal but NaN, which gives NaN.
     void heights(std::span<const glm::dvec3> normals, std::span<float> out) const override;
+    /// In a blend the higher layer's weight is the smooth step by which its border fades out, and the lower ones share the
+    /// rest.
+    void heights_with_origins(std::span<const glm::dvec3> normals, std::span<float> out,
+                              std::span<WeighedOrigin> origins) const override;
     /// The least of the layers'.
     double spacing(const Cap& cap) const override;
     /// Samples that a higher layer covers are left out; those in a blend are as blended.
@@ -49,9 +53,13 @@ class LayeredField : public ElevationField {
 
   private:
     void to_common_datum(const ElevationField& layer, std::span<const glm::dvec3> normals, std::span<float> h) const;
-    /// The surface of the lowest `count` layers.
-    void heights_of_lowest(std::size_t count, std::span<const glm::dvec3> normals, std::span<float> out) const;
-    void heights_of_piece(std::size_t count, std::span<const glm::dvec3> normals, std::span<float> out) const;
+    class Piece;
+    /// The surface of the lowest `count` layers. @param origins  may be empty
+    void heights_of_lowest(std::size_t count, std::span<const glm::dvec3> normals, std::span<float> out,
+                           std::span<WeighedOrigin> origins = {}) const;
+    /// A layer's own, above datum_. @param origins  may be empty
+    void heights_of_layer(std::size_t layer, std::span<const glm::dvec3> normals, std::span<float> out,
+                          std::span<WeighedOrigin> origins) const;
     /// Corrects the samples of a layer; those that one of the `higher` layers covers become NaN.
     void hide_covered(std::size_t layer, std::span<const std::size_t> higher, std::span<const glm::dvec3> normals,
                       std::span<float> h) const;
@@ -67,8 +75,9 @@ class LayeredField : public ElevationField {
     double spacing_of_lowest(std::size_t count, const glm::dvec3& normal) const;
 
     std::vector<std::shared_ptr<const ElevationField>> layers_;
-    std::vector<double> reaches_;        // by layer
-    std::vector<RegionalBlend> blends_;  // by layer; of the lowest `blends_.size()` while the rest is being made
+    std::vector<std::uint32_t> first_file_;  // by layer: how many files there are below it
+    std::vector<double> reaches_;            // by layer
+    std::vector<RegionalBlend> blends_;      // by layer; of the lowest `blends_.size()` while the rest is being made
     VerticalDatum datum_;
     GeoidFunction geoid_;
     double radius_m_;

@@ -13,6 +13,12 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::distance(a, b)));
 }
 
+// As RasterSurface rounds.
+int nearest_sample(double at) {
+    const double below = std::floor(at);
+    return static_cast<int>(below) + (static_cast<float>(at - below) < 0.5f ? 0 : 1);
+}
+
 // Heights in metres as Raster::at has them.
 template <class Sample>
 void to_metres(const RasterHeader& raster, const Sample* samples, std::span<float> out) {
@@ -41,11 +47,12 @@ void keep_every(std::size_t every, std::size_t& sides, std::vector<glm::dvec2>& 
 }  // namespace
 
 RasterField::RasterField(std::shared_ptr<const RasterSamples> samples, RasterSurvey survey, VerticalDatum datum,
-                         bool datum_assumed)
+                         bool datum_assumed, std::shared_ptr<const RasterMosaic> mosaic)
     : samples_(std::move(samples)),
       survey_(std::move(survey)),
       datum_(datum),
       datum_assumed_(datum_assumed),
+      mosaic_(std::move(mosaic)),
       map_(samples_->header()),
       surface_(samples_->header(), survey_) {
     std::vector<RasterBlocks::Block> blocks(survey_.fill.size());
@@ -61,13 +68,60 @@ RasterField::RasterField(std::shared_ptr<const Raster> raster, VerticalDatum dat
     : RasterField(std::make_shared<const WholeRaster>(raster), survey(WholeRaster(raster)), datum) {}
 
 void RasterField::heights(std::span<const glm::dvec3> normals, std::span<float> out) const {
-    assert(out.size() == normals.size());
+    heights_with_origins(normals, out, {});
+}
+
+void RasterField::heights_with_origins(std::span<const glm::dvec3> normals, std::span<float> out,
+                                       std::span<WeighedOrigin> origins) const {
+    assert(out.size() == normals.size() && (origins.empty() || origins.size() == normals.size()));
     SampleCursor cursor(*samples_);
     glm::dvec2 at[256];
     for (std::size_t first = 0; first < normals.size(); first += std::size(at)) {
         const std::size_t n = std::min(std::size(at), normals.size() - first);
         map_.samples_from_normals(normals.subspan(first, n), {at, n});
         surface_.heights(cursor, {at, n}, out.subspan(first, n));
+        if (!origins.empty()) find_origins({at, n}, out.subspan(first, n), origins.subspan(first, n));
+    }
+}
+
+void RasterField::find_origins(std::span<const glm::dvec2> samples, std::span<const float> heights,
+                               std::span<WeighedOrigin> origins) const {
+    std::fill(origins.begin(), origins.end(), WeighedOrigin{{1, 1}, 1});
+    if (!mosaic_) return;
+    const int columns = survey_.columns, rows = raster().height;
+    std::vector<glm::ivec2> nearest(samples.size());
+    glm::ivec2 least(columns, rows), most(-1);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (std::isnan(heights[i])) continue;
+        const glm::ivec2 at(nearest_sample(samples[i].x), nearest_sample(samples[i].y));
+        // Around the planet, or half a sample beyond the outer ones.
+        const int column =
+            surface_.columns_around() > 0 ? (at.x + columns) % columns : std::clamp(at.x, 0, columns - 1);
+        nearest[i] = {column, std::clamp(at.y, 0, rows - 1)};
+        least = glm::min(least, nearest[i]);
+        most = glm::max(most, nearest[i]);
+    }
+    if (most.x < 0) return;
+    // Of places that are near each other, which nearly all are, at once.
+    constexpr int most_across = 128;
+    const glm::ivec2 size = most - least + 1;
+    const bool near = size.x <= most_across && size.y <= most_across;
+    SampleWindow window{least.x, least.y, near ? size.x : 1, near ? size.y : 1};
+    std::vector<std::uint32_t> parts(window.count());
+    if (near) mosaic_->find_parts(window, parts);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (std::isnan(heights[i])) continue;
+        std::size_t k = 0;
+        if (near) {
+            k = static_cast<std::size_t>(nearest[i].y - least.y) * static_cast<std::size_t>(size.x) +
+                static_cast<std::size_t>(nearest[i].x - least.x);
+        } else {
+            window.column = nearest[i].x;
+            window.row = nearest[i].y;
+            mosaic_->find_parts(window, parts);
+        }
+        const std::uint32_t file = 1 + parts[k];
+        origins[i].origin = {file, file};
     }
 }
 
@@ -164,7 +218,9 @@ void RasterField::samples(const Cap& cap, std::vector<glm::dvec3>& normals, std:
 std::vector<SourceInfo> RasterField::sources() const {
     const RasterHeader& r = raster();
     const glm::dvec2 middle = 0.5 * glm::dvec2(r.width - 1, r.height - 1);
-    return {{r.name, r.checksum, r.crs, datum_, spacing_at(middle), datum_assumed_}};
+    SourceInfo info{r.name, r.checksum, r.crs, datum_, spacing_at(middle), datum_assumed_};
+    if (mosaic_) info.files = mosaic_->file_names();
+    return {std::move(info)};
 }
 
 bool RasterField::may_have_border(int column, int row) const {

@@ -36,6 +36,22 @@ SampleWindow intersection(const SampleWindow& a, const SampleWindow& b) {
             std::min(a.row + a.rows, b.row + b.rows) - row};
 }
 
+bool meet(const SampleWindow& a, const SampleWindow& b) {
+    const SampleWindow common = intersection(a, b);
+    return common.columns > 0 && common.rows > 0;
+}
+
+/// For each sample of a window that is part of another one: its index there and its own.
+template <class Visit>
+void for_each_in(const SampleWindow& whole, const SampleWindow& part, Visit visit) {
+    std::size_t from = 0;
+    for (int row = part.row; row < part.row + part.rows; ++row) {
+        std::size_t to = static_cast<std::size_t>(row - whole.row) * static_cast<std::size_t>(whole.columns) +
+                         static_cast<std::size_t>(part.column - whole.column);
+        for (int i = 0; i < part.columns; ++i) visit(to++, from++);
+    }
+}
+
 bool near_vectors(glm::dvec2 a, glm::dvec2 b, int samples) {
     // Over all samples of a part they stay within the slack.
     return glm::distance(a, b) * samples <= slack * glm::length(a);
@@ -156,7 +172,7 @@ void RasterMosaic::index_parts() {
     }
 }
 
-std::vector<const MosaicPart*> RasterMosaic::parts_in(const SampleWindow& w) const {
+std::vector<std::uint32_t> RasterMosaic::parts_in(const SampleWindow& w) const {
     std::vector<std::uint32_t> found;
     for (int row = w.row / cell_rows_; row <= (w.row + w.rows - 1) / cell_rows_; ++row)
         for (int column = w.column / cell_columns_; column <= (w.column + w.columns - 1) / cell_columns_; ++column) {
@@ -165,12 +181,8 @@ std::vector<const MosaicPart*> RasterMosaic::parts_in(const SampleWindow& w) con
         }
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
-    std::vector<const MosaicPart*> parts;
-    for (const std::uint32_t i : found) {
-        const SampleWindow common = intersection(w, parts_[i].window);
-        if (common.columns > 0 && common.rows > 0) parts.push_back(&parts_[i]);
-    }
-    return parts;
+    std::erase_if(found, [&](std::uint32_t i) { return !meet(w, parts_[i].window); });
+    return found;
 }
 
 bool RasterMosaic::read(const SampleWindow& window, std::span<std::int16_t> out) const {
@@ -184,24 +196,54 @@ void RasterMosaic::read(const SampleWindow& window, std::span<float> out) const 
 template <class Sample>
 bool RasterMosaic::read_samples(const SampleWindow& window, std::span<Sample> out) const {
     assert(out.size() == window.count());
-    const std::vector<const MosaicPart*> parts = parts_in(window);
-    const bool one = parts.size() == 1 && intersection(window, parts[0]->window).count() == window.count();
-    if (one) return read_part(*parts[0], window, out);
+    const std::vector<std::uint32_t> parts = parts_in(window);
+    const bool one = parts.size() == 1 && intersection(window, parts_[parts[0]].window).count() == window.count();
+    if (one) return read_part(parts_[parts[0]], window, out);
     std::fill(out.begin(), out.end(), void_mark<Sample>());
     std::vector<Sample> piece;
-    for (const MosaicPart* part : parts) {
-        const SampleWindow common = intersection(window, part->window);
+    for (const std::uint32_t i : parts) {
+        const SampleWindow common = intersection(window, parts_[i].window);
         piece.resize(common.count());
-        if (!read_part(*part, common, std::span(piece))) return false;
-        const Sample* from = piece.data();
-        for (int row = common.row; row < common.row + common.rows; ++row) {
-            Sample* to = out.data() + static_cast<std::ptrdiff_t>(row - window.row) * window.columns +
-                         (common.column - window.column);
-            for (int i = 0; i < common.columns; ++i, ++from)
-                if (!is_void(*from)) to[i] = *from;
-        }
+        if (!read_part(parts_[i], common, std::span(piece))) return false;
+        for_each_in(window, common, [&](std::size_t to, std::size_t from) {
+            if (!is_void(piece[from])) out[to] = piece[from];
+        });
     }
     return true;
+}
+
+void RasterMosaic::find_parts(const SampleWindow& window, std::span<std::uint32_t> out) const {
+    assert(out.size() == window.count());
+    const std::vector<std::uint32_t> parts = parts_in(window);
+    if (!parts.empty()) std::fill(out.begin(), out.end(), parts[0]);
+    std::vector<float> piece;
+    for (std::size_t p = 1; p < parts.size(); ++p) {
+        const MosaicPart& part = parts_[parts[p]];
+        const SampleWindow common = intersection(window, part.window);
+        const bool over_others = std::any_of(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(p),
+                                             [&](std::uint32_t q) { return meet(common, parts_[q].window); });
+        piece.assign(common.count(), 0);
+        if (over_others) read_part(part, common, std::span(piece));
+        for_each_in(window, common, [&](std::size_t to, std::size_t from) {
+            if (!is_void(piece[from])) out[to] = parts[p];
+        });
+    }
+}
+
+std::vector<std::string> RasterMosaic::file_names() const {
+    std::filesystem::path shared = std::filesystem::path(parts_[0].path).parent_path();
+    for (const MosaicPart& part : parts_) {
+        const std::filesystem::path folder = std::filesystem::path(part.path).parent_path();
+        const auto differ = std::mismatch(shared.begin(), shared.end(), folder.begin(), folder.end());
+        std::filesystem::path both;
+        for (auto name = shared.begin(); name != differ.first; ++name) both /= *name;
+        shared = std::move(both);
+    }
+    std::vector<std::string> names;
+    for (const MosaicPart& part : parts_)
+        names.push_back(shared.empty() ? part.path
+                                       : std::filesystem::path(part.path).lexically_relative(shared).native());
+    return names;
 }
 
 template <class Sample>

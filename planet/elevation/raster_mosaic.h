@@ -49,10 +49,15 @@ class RasterMosaic {
     const RasterHeader& header() const { return header_; }
     const std::vector<MosaicPart>& parts() const { return parts_; }
     bool may_be_shorts() const { return may_be_shorts_; }
+    /// Of the parts' files, below the folder that all of them share.
+    std::vector<std::string> file_names() const;
 
     /// Samples as Raster has them. False if a value does not fit.
     bool read(const SampleWindow& window, std::span<std::int16_t> out) const;
     void read(const SampleWindow& window, std::span<float> out) const;
+    /// Which part each sample of a window is of; nothing is meant by what a void sample gets. Reads only those parts that
+    /// lie over others there.
+    void find_parts(const SampleWindow& window, std::span<std::uint32_t> out) const;
 
     /// Throws Error(bad_data) if a file of a part has changed its size or time, or is gone, since the mosaic was made.
     void check_unchanged(const MosaicPart& part) const;
@@ -72,7 +77,7 @@ class RasterMosaic {
 
     static std::optional<Stamp> stamp_of(const std::string& file);
     void index_parts();
-    std::vector<const MosaicPart*> parts_in(const SampleWindow& window) const;
+    std::vector<std::uint32_t> parts_in(const SampleWindow& window) const;
     template <class Sample>
     bool read_samples(const SampleWindow& window, std::span<Sample> out) const;
     template <class Sample>

@@ -54,10 +54,11 @@ RegionalBlend::RegionalBlend(Make make, double reach, std::size_t bytes)
     assert(has_regions(reach));
 }
 
-void RegionalBlend::add(std::span<const glm::dvec3> normals, std::span<double> corrections) const {
+void RegionalBlend::add(std::span<const glm::dvec3> normals, std::span<double> corrections,
+                        std::span<BorderShare> shares) const {
     assert(corrections.size() == normals.size());
     if (whole_) {
-        whole_->add(normals, corrections);
+        whole_->add(normals, corrections, shares);
         return;
     }
     if (!make_) return;
@@ -65,7 +66,10 @@ void RegionalBlend::add(std::span<const glm::dvec3> normals, std::span<double> c
     std::shared_ptr<const BorderBlend> blend;
     std::size_t first = 0;  // of those in the region held
     const auto add_held = [&](std::size_t end) {
-        if (blend) blend->add(normals.subspan(first, end - first), corrections.subspan(first, end - first));
+        const std::size_t n = end - first;
+        if (blend)
+            blend->add(normals.subspan(first, n), corrections.subspan(first, n),
+                       shares.empty() ? shares : shares.subspan(first, n));
         first = end;
     };
     for (std::size_t i = 0; i < normals.size(); ++i) {

@@ -30,8 +30,9 @@ class RegionalBlend {
     /// Whether a reach is small enough for more than a few regions, and large enough to number them.
     static bool has_regions(double reach) { return reach > 4e-6 && reach < 0.05; }
 
-    /// Adds to each correction, in metres, that at a unit normal.
-    void add(std::span<const glm::dvec3> normals, std::span<double> corrections) const;
+    /// Adds to each correction, in metres, that at a unit normal. @param shares  as BorderBlend::add
+    void add(std::span<const glm::dvec3> normals, std::span<double> corrections,
+             std::span<BorderShare> shares = {}) const;
 
   private:
     std::shared_ptr<const BorderBlend> whole_;

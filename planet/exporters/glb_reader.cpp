@@ -141,6 +141,7 @@ class GlbScene {
 
     ReadMesh read() {
         walk();
+        apply_factors();
         for (glm::dvec3& v : read_.mesh.vertices) v = {v.x, 0 - v.z, v.y};
         for (glm::vec3& n : read_.looks.normals) n = {n.x, 0 - n.z, n.y};
         read_reference();
@@ -266,7 +267,35 @@ class GlbScene {
             const Accessor colors = accessor(index, numbers == 3 ? "VEC3" : "VEC4", static_cast<std::size_t>(numbers));
             append(looks.colors, colors, vertices, numbers);
         }
+        factors_.emplace_back(vertices, factor_of(primitive));
         if (looks.picture.empty()) read_picture(primitive);
+    }
+
+    // 3.9.2: the base colour of its material, which is 1 if it says none.
+    glm::vec4 factor_of(const Json& primitive) const {
+        glm::vec4 color(1);
+        if (!primitive.contains("material")) return color;
+        const Json factor = json_.at("materials")
+                                .at(whole(primitive, "material"))
+                                .value("/pbrMetallicRoughness/baseColorFactor"_json_pointer, Json());
+        if (factor.is_array() && factor.size() == 4)
+            for (int k = 0; k < 4; ++k) color[k] = factor[static_cast<std::size_t>(k)].get<float>();
+        return color;
+    }
+
+    void apply_factors() {
+        MeshLooks& looks = read_.looks;
+        if (factors_.empty()) return;
+        const auto same = [&](const auto& part) { return part.second == factors_.front().second; };
+        if (std::ranges::all_of(factors_, same)) {
+            looks.base_color = factors_.front().second;
+            return;
+        }
+        if (looks.colors.size() != read_.mesh.vertices.size())
+            looks.colors.assign(read_.mesh.vertices.size(), glm::vec4(1));
+        auto color = looks.colors.begin();
+        for (const auto& [vertices, factor] : factors_)
+            for (std::size_t i = 0; i < vertices; ++i) *color++ *= factor;
     }
 
     // Floats, or shares of the largest whole number. What is not given is 1.
@@ -289,15 +318,12 @@ class GlbScene {
         }
     }
 
-    // The base colour of its material, if it is in the file.
+    // The picture of its material, if it is in the file.
     void read_picture(const Json& primitive) {
         if (!primitive.contains("material")) return;
         const Json& material = json_.at("materials").at(whole(primitive, "material"));
         const Json pointer = material.value("/pbrMetallicRoughness/baseColorTexture"_json_pointer, Json());
         if (!pointer.is_object()) return;
-        const Json factor = material.value("/pbrMetallicRoughness/baseColorFactor"_json_pointer, Json());
-        if (factor.is_array() && factor.size() == 4)
-            for (int k = 0; k < 4; ++k) read_.looks.base_color[k] = factor[static_cast<std::size_t>(k)].get<float>();
         const Json& texture = json_.at("textures").at(whole(pointer, "index"));
         if (!texture.contains("source")) return;
         const Json& image = json_.at("images").at(whole(texture, "source"));
@@ -363,6 +389,7 @@ class GlbScene {
     const std::size_t file_bytes_;
     std::size_t corners_ = 0;  ///< met so far, and one for each primitive
     ReadMesh read_;
+    std::vector<std::pair<std::size_t, glm::vec4>> factors_;  ///< of so many vertices each, in order
 };
 
 }  // namespace

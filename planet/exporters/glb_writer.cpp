@@ -161,7 +161,7 @@ std::string json_of(const Layout& layout, const MeshReference& reference, const 
     const Json primitive{{"attributes", attributes}, {"indices", corners}, {"material", 0}, {"mode", 4}};
     gltf["meshes"] = Json::array({{{"name", "terrain"}, {"primitives", Json::array({primitive})}}});
     const bool draped = layout.picture.bytes > 0;
-    const double grey = draped || layout.colors.bytes > 0 ? 1 : 0.6;
+    const double grey = draped || layout.colors.bytes > 0 ? 1 : unknown_color;
     Json surface{{"baseColorFactor", {grey, grey, grey, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
     if (draped) put_picture(gltf, surface, layout, looks, arrays);
     gltf["materials"] = Json::array({{{"name", "terrain"}, {"pbrMetallicRoughness", surface}}});

@@ -60,9 +60,13 @@ struct MeshLooks {
     /// By vertex, red, green, blue, alpha, 0..1, as the file has them; or empty. A .ply holds 8 bits of each, an .obj no alpha.
     std::vector<glm::vec4> colors = {};
     std::string picture = {};  ///< the bytes of a PNG or JPEG file; or empty
-    /// What colours and the picture are multiplied with, linear, where a material has a picture: as read, not written.
+    /// What colours and the picture are multiplied with, linear: as read, not written. Where the materials of a .glb
+    /// differ in it, the colours are multiplied already.
     glm::vec4 base_color = glm::vec4(1);
 };
+
+/// Of each channel of the base colour, linear, that a .glb is written with where nothing is known of the mesh's colours.
+inline constexpr double unknown_color = 0.6;
 
 /// Takes the bytes of a file in order, some 1 MB or more at a time. What it throws passes through write_mesh().
 using ByteSink = std::function<void(std::string_view)>;

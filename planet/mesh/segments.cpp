@@ -13,9 +13,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Room for the meshes of views at half a pixel, made at once: memory that is not used costs nothing, but moving 10 MB to
-/// a larger place takes 10 ms of one frame, most of it for new pages.
-constexpr std::size_t usual_vertices = 1 << 20, usual_blocks = 1 << 16;
+/// Room made at once, see segment_arrays.cpp.
+constexpr std::size_t usual_blocks = 1 << 16;
 
 /// Finds a cell that is split in a mesh.
 PlacedCell find_split_cell(const TileSource& tiles, LocationCode cell) {
@@ -23,24 +22,6 @@ PlacedCell find_split_cell(const TileSource& tiles, LocationCode cell) {
     const PlacedTile* tile = tiles.tile(cell.ancestor(cell.bisection_level() - below));
     assert(tile != nullptr);
     return {tile, static_cast<unsigned>(cell.bits() & ((1u << below) - 1)) | 1u << below};
-}
-
-/// Sorts ranges and joins those that touch.
-void join(std::vector<Range>& ranges) {
-    std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
-    std::size_t kept = 0;
-    for (const Range& r : ranges) {
-        if (kept > 0 && ranges[kept - 1].first + ranges[kept - 1].count == r.first)
-            ranges[kept - 1].count += r.count;
-        else
-            ranges[kept++] = r;
-    }
-    ranges.resize(kept);
-}
-
-template <class T>
-void copy(GrowingArray<T>& to, std::uint32_t at, std::span<const T> from, std::uint32_t first, std::uint32_t count) {
-    if (count > 0) std::memcpy(to.data() + at, from.data() + first, count * sizeof(T));
 }
 
 }  // namespace
@@ -113,28 +94,45 @@ void Segments::build(const TileSource& tiles, const SegmentView& view, int threa
 }
 
 void Segments::update(const TileSource& tiles, const SegmentView& view, int threads) {
-    changed_vertices_.clear();
-    changed_indices_.clear();
-    built_ = 0;
+    arrays_.begin_changes();
     if (tiles_from_ != &tiles || !view.same_but_for_eye_and_culling(view_)) clear();
     const bool at_rest = listed_ && view.test.eye == view_.test.eye && view.culling == view_.culling;
     tiles_from_ = &tiles;
     view_ = view;
     if (at_rest) return;
-    tree_.update(tiles, view);
-    release_dropped();
-    std::vector<Job> jobs = stale_blocks();
-    build_all(tiles, jobs, static_cast<std::size_t>(std::max(threads, 1)));
-    place(jobs, static_cast<std::size_t>(std::max(threads, 1)));
+    const auto workers = static_cast<std::size_t>(std::max(threads, 1));
+    arrays_.write(view.morph, workers);
+    make(tiles, view, workers);
+    arrays_.write(view.morph, workers);
+    arrays_.end_changes();
     list();
     shed_unseen();
     listed_ = true;
+}
+
+void Segments::prepare(const TileSource& tiles, const SegmentView& view, int threads) {
+    if (tiles_from_ != &tiles || !view.same_but_for_eye_and_culling(view_) || !arrays_.all_written()) return;
+    listed_ = false;
+    make(tiles, view, static_cast<std::size_t>(std::max(threads, 1)));
+}
+
+/// Brings everything up to date but what can be asked of segments: arrays, lists and sums.
+void Segments::make(const TileSource& tiles, const SegmentView& view, std::size_t threads) {
+    if (made_ && view.test.eye == made_for_.test.eye && view.culling == made_for_.culling) return;
+    made_for_ = view;
+    tree_.update(tiles, view);
+    release_dropped();
+    std::vector<Job> jobs = stale_blocks();
+    build_all(tiles, jobs, threads);
+    for (const Job& job : jobs) place(job);
+    made_ = true;
 }
 
 void Segments::invalidate(std::span<const LocationCode> tile_roots) {
     tree_.invalidate(tile_roots);
     release_dropped();
     listed_ = listed_ && tile_roots.empty();
+    made_ = made_ && tile_roots.empty();
 }
 
 void Segments::clear() {
@@ -145,14 +143,14 @@ void Segments::clear() {
         free_blocks_.push_back(static_cast<std::uint32_t>(i));
     }
     segments_.clear();
-    listed_ = false;
-    vertex_places_.clear();
-    index_places_.clear();
+    arrays_.clear();
+    listed_ = made_ = false;
     total_leaves_ = 0;
 }
 
 std::vector<Segments::Job> Segments::stale_blocks() {
     std::vector<Job> jobs;
+    if (blocks_.empty()) blocks_.reserve(usual_blocks);
     in_view_.clear();
     for (const auto [i, open] : tree_.in_view()) {
         SegmentNode& n = tree_.node(i);
@@ -179,7 +177,7 @@ void Segments::build_all(const TileSource& tiles, std::span<Job> jobs, std::size
     std::atomic<std::size_t> next = 0;
     parallel_for(workers, static_cast<unsigned>(workers), [&](std::size_t w) {
         Worker& worker = *workers_[w];
-        worker.builder.begin(tiles, view_);
+        worker.builder.begin(tiles, made_for_);
         worker.parts.clear();
         for (std::size_t first; (first = next.fetch_add(run, std::memory_order_relaxed)) < jobs.size();)
             for (Job& job : jobs.subspan(first, std::min(run, jobs.size() - first))) build(tiles, job, worker);
@@ -200,7 +198,7 @@ void Segments::build(const TileSource& tiles, Job& job, Worker& worker) const {
         while (parts.size() > job.first_part + 1) {
             Part &a = parts[parts.size() - 2], &b = parts.back();
             if (a.cell == half || a.cell.sibling() != b.cell ||
-                a.leaves + b.leaves > static_cast<std::uint32_t>(view_.segment_leaves))
+                a.leaves + b.leaves > static_cast<std::uint32_t>(made_for_.segment_leaves))
                 return;
             a = {.cell = a.cell.parent(), .leaves = a.leaves + b.leaves, .piece = Part::none, .is_new = true};
             parts.pop_back();
@@ -234,43 +232,6 @@ void Segments::build(const TileSource& tiles, Job& job, Worker& worker) const {
     }
 }
 
-void Segments::place(std::span<Job> jobs, std::size_t threads) {
-    for (const Job& job : jobs) place(job);
-    join(changed_vertices_);
-    join(changed_indices_);
-    if (vertices_.size() == 0) reserve();
-    vertices_.resize(vertex_places_.size());
-    if (view_.morph) morphs_.resize(vertex_places_.size());
-    indices_.resize(index_places_.size());
-    leaf_levels_.resize(index_places_.size());
-    constexpr std::size_t run = 64;
-    parallel_for((jobs.size() + run - 1) / run, static_cast<unsigned>(threads), [&](std::size_t r) {
-        for (const Job& job : jobs.subspan(r * run, std::min(run, jobs.size() - r * run))) copy_arrays(job);
-    });
-}
-
-void Segments::reserve() {
-    blocks_.reserve(usual_blocks);
-    vertices_.reserve_more(usual_vertices);
-    if (view_.morph) morphs_.reserve_more(usual_vertices);
-    indices_.reserve_more(2 * usual_vertices);
-    leaf_levels_.reserve_more(2 * usual_vertices);
-}
-
-void Segments::copy_arrays(const Job& job) {
-    const SegmentBuilder& from = job.worker->builder;
-    const std::span<const Part> parts = job.parts();
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        if (!parts[k].is_new) continue;
-        const BuiltSegment& b = parts[k].built;
-        const Segment& s = blocks_[job.block].pieces[k].segment;
-        copy(vertices_, s.first_vertex, from.vertices(), b.first_vertex, b.vertices);
-        if (view_.morph) copy(morphs_, s.first_vertex, from.morphs(), b.first_vertex, b.vertices);
-        copy(indices_, s.first_index, from.indices(), b.first_index, b.indices);
-        copy(leaf_levels_, s.first_leaf, from.leaf_levels(), b.first_leaf, b.leaves);
-    }
-}
-
 /// Gives places to the new parts of a block.
 void Segments::place(const Job& job) {
     Block& block = blocks_[job.block];
@@ -290,7 +251,8 @@ void Segments::place(const Job& job) {
             release_until(part.piece);
             named = &old[next++];
         }
-        const Piece& piece = block.pieces.emplace_back(part.is_new ? new_piece(part.built, named) : *named);
+        const Piece& piece =
+            block.pieces.emplace_back(part.is_new ? new_piece(part.built, job.worker->builder, named) : *named);
         block.expires = std::min(block.expires, piece.expires);
         block.least_reach = std::min(block.least_reach, piece.least_reach);
         block.odometer = std::min(block.odometer, piece.odometer);
@@ -299,35 +261,21 @@ void Segments::place(const Job& job) {
     release_until(old.size());
 }
 
-// What is built again mostly has as many vertices as before, or nearly. What outgrew its place is likely to do so again.
-// @param old of the same cell, or nullptr
-Segments::Piece Segments::new_piece(const BuiltSegment& b, const Piece* old) {
-    Range vertices, indices;
-    if (old && b.vertices <= old->vertex_room && b.indices <= old->index_room) {
-        vertices = {old->segment.first_vertex, old->vertex_room};
-        indices = {old->segment.first_index, old->index_room};
-        total_leaves_ -= old->segment.leaves;
-    } else {
-        if (old) release(*old);
-        const auto room = [&](std::uint32_t count) { return old ? (count + 31) / 32 * 32 : count; };
-        vertices = vertex_places_.allocate(room(b.vertices));
-        indices = index_places_.allocate(room(b.indices));
-    }
-    changed_vertices_.push_back({vertices.first, b.vertices});
-    changed_indices_.push_back({indices.first, b.indices});
+/// @param old of the same cell, or nullptr
+Segments::Piece Segments::new_piece(const BuiltSegment& b, const SegmentBuilder& builder, const Piece* old) {
+    if (old) total_leaves_ -= old->segment.leaves;
     total_leaves_ += b.leaves;
-    ++built_;
+    const SegmentPlace place = arrays_.place(b, builder, old ? &old->place : nullptr);
     return {.segment = {.root = b.cell,
                         .patch = b.patch,
-                        .first_vertex = vertices.first,
+                        .first_vertex = place.vertices.first,
                         .vertex_count = b.vertices,
-                        .first_index = indices.first,
+                        .first_index = place.indices.first,
                         .index_count = b.indices,
                         .leaves = b.leaves,
-                        .first_leaf = indices.first,
+                        .first_leaf = place.indices.first,
                         .detailed = b.detailed},
-            .vertex_room = vertices.count,
-            .index_room = indices.count,
+            .place = place,
             .sphere = b.sphere,
             .expires = tree_.expiry(b.slack),
             .ratio_max = b.ratio_max,
@@ -387,8 +335,7 @@ void Segments::release_dropped() {
 }
 
 void Segments::release(const Piece& p) {
-    vertex_places_.free({p.segment.first_vertex, p.vertex_room});
-    index_places_.free({p.segment.first_index, p.index_room});
+    arrays_.release(p.place);
     total_leaves_ -= p.segment.leaves;
 }
 
@@ -423,8 +370,8 @@ std::uint64_t Segments::hash() const {
                 std::memcpy(word, &m, sizeof m);
                 words(word, 3);
             }
-        words(indices_.data() + s.first_index, s.index_count);
-        words(leaf_levels_.data() + s.first_leaf, s.leaves);
+        words(&indices()[s.first_index], s.index_count);
+        words(&leaf_levels()[s.first_leaf], s.leaves);
     }
     return h;
 }

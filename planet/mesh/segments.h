@@ -8,9 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "planet/mesh/growing_array.h"
-#include "planet/mesh/range_allocator.h"
-#include "planet/mesh/segment_builder.h"
+#include "planet/mesh/segment_arrays.h"
 #include "planet/mesh/segment_tree.h"
 
 namespace planet {
@@ -45,26 +43,31 @@ class Segments {
     /// everything.
     void update(const TileSource& tiles, const SegmentView& view, int threads = 1);
 
+    /// Does ahead what it can of the next update(), which for this view or one nearby is then short. Nothing that can be
+    /// asked of segments changes: meanwhile other threads may go on reading them. Does nothing where the update would
+    /// build everything.
+    void prepare(const TileSource& tiles, const SegmentView& view, int threads = 1);
+
     /// To be called when tiles of the source came, went or changed: segments above and below these cells are built anew.
-    /// Until the next update no tile is looked at.
+    /// Until the next update or prepare no tile is looked at. Nothing that can be asked of segments changes.
     void invalidate(std::span<const LocationCode> tile_roots);
 
     /// Those in view.
     std::span<const Segment> segments() const { return segments_; }
     /// Segments in view, others that are kept, and gaps.
-    std::span<const SegmentVertex> vertices() const { return vertices_.span(); }
+    std::span<const SegmentVertex> vertices() const { return arrays_.vertices(); }
     /// Parallel to vertices(), if SegmentView::morph.
-    std::span<const MorphVertex> morphs() const { return morphs_.span(); }
+    std::span<const MorphVertex> morphs() const { return arrays_.morphs(); }
     /// One triangle strip a segment, indices relative to first_vertex.
-    std::span<const std::uint32_t> indices() const { return indices_.span(); }
+    std::span<const std::uint32_t> indices() const { return arrays_.indices(); }
     /// The bisection level of each leaf, in the order of the strips.
-    std::span<const std::uint8_t> leaf_levels() const { return leaf_levels_.span(); }
+    std::span<const std::uint8_t> leaf_levels() const { return arrays_.leaf_levels(); }
 
     /// Of vertices() (and morphs()) and of indices(): what the last build() or update() has written, ascending.
-    std::span<const Range> changed_vertices() const { return changed_vertices_; }
-    std::span<const Range> changed_indices() const { return changed_indices_; }
+    std::span<const Range> changed_vertices() const { return arrays_.changed_vertices(); }
+    std::span<const Range> changed_indices() const { return arrays_.changed_indices(); }
     /// Segments written by the last build() or update().
-    std::size_t built() const { return built_; }
+    std::size_t built() const { return arrays_.written(); }
 
     /// Sums over the segments in view.
     std::size_t leaf_count() const { return sums_.leaves; }
@@ -85,10 +88,9 @@ class Segments {
     std::uint64_t hash() const;
 
   private:
-    /// A segment with a place, which may be larger than it: for when it is built again and comes out longer.
     struct Piece {
         Segment segment;
-        std::uint32_t vertex_room, index_room;
+        SegmentPlace place;
         Sphere sphere;
         double expires;  ///< see SegmentTree
         double ratio_max, least_reach, deviation_max;
@@ -121,41 +123,35 @@ class Segments {
     struct Part;
     struct Job;
     struct Worker;
-
     void clear();
+    void make(const TileSource& tiles, const SegmentView& view, std::size_t threads);
     std::vector<Job> stale_blocks();
     void build_all(const TileSource& tiles, std::span<Job> jobs, std::size_t threads);
     void build(const TileSource& tiles, Job& job, Worker& worker) const;
-    void place(std::span<Job> jobs, std::size_t threads);
     void place(const Job& job);
-    void reserve();
-    void copy_arrays(const Job& job);
+    Piece new_piece(const BuiltSegment& b, const SegmentBuilder& builder, const Piece* old);
     double ratio_since(double odometer, double ratio_max, double least_reach) const;
-    Piece new_piece(const BuiltSegment& b, const Piece* old);
     void list();
     void list_culled(const Block& block, const CullingTest& culling, unsigned open);
     void release_dropped();
     void release(const Piece& piece);
     void shed_unseen();
 
-    SegmentTree tree_;
-    SegmentView view_;
+    SegmentView view_;  // of the last update
     const TileSource* tiles_from_ = nullptr;
     bool listed_ = false;  // segments_ is that of view_
+    // What is made, for a view that is that of the last update or the one prepared for.
+    SegmentView made_for_;
+    bool made_ = false;  // and no tile has changed since
+    SegmentTree tree_;
     std::vector<Block> blocks_;
     std::vector<std::uint32_t> free_blocks_;
     std::vector<InView> in_view_;
     std::vector<std::unique_ptr<Worker>> workers_;
 
-    RangeAllocator vertex_places_, index_places_;  // levels have the place of indices
-    GrowingArray<SegmentVertex> vertices_;
-    GrowingArray<MorphVertex> morphs_;
-    GrowingArray<std::uint32_t> indices_;
-    GrowingArray<std::uint8_t> leaf_levels_;
-
+    SegmentArrays arrays_;
     std::vector<Segment> segments_;
-    std::vector<Range> changed_vertices_, changed_indices_;
-    std::size_t built_ = 0, total_leaves_ = 0, block_leaves_ = 0, kept_ = 0;
+    std::size_t total_leaves_ = 0, block_leaves_ = 0, kept_ = 0;
     Sums sums_;
 };
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "planet/elevation/height_origin.h"
 #include "planet/frames.h"
 #include "planet/mesh/tile_layers.h"
 #include "planet/mesh/tile_layout.h"
@@ -24,6 +25,8 @@ struct Tile {
     std::vector<float> height;
     /// By vertex index, metres: the datum above the ellipsoid (N for egm96), so that h = height + undulation. Empty: 0.
     std::vector<GeoidUndulation> undulation;
+    /// By vertex index: where the height came from.
+    OriginPlane origins;
     /// By local index, 2^depth of them (0 unused): the largest distance in metres, along the geodetic normal, between
     /// the plane of either cell of the diamond and any finest vertex below; saturated.
     std::vector<float> deviation;

@@ -18,8 +18,9 @@ namespace planet {
 
 class SqliteFile;
 
-inline constexpr int store_format_version = 3;
-/// The oldest that can be read: all its tiles begin at multiples of 12.
+inline constexpr int store_format_version = 4;
+/// The oldest that can be read: all its tiles begin at multiples of 12. Before version 4 it is not known which source a
+/// height came from.
 inline constexpr int oldest_store_format_version = 2;
 
 /// The options of a bake that determine what is in its store. See BakeOptions.

@@ -115,6 +115,10 @@ class Checker {
             problem(tile.root, "record " + std::to_string(i) + " does not enclose those below it");
     }
 
+    static bool same_origin(const Tile& a, std::size_t v, const Tile& b, std::size_t w) {
+        return a.origins.known() == b.origins.known() && (!a.origins.known() || a.origins[v] == b.origins[w]);
+    }
+
     void check_sides(const Tile& tile) {
         const TileLayout& layout = tile_layout();
         TilePointer beside[3];
@@ -133,7 +137,7 @@ class Checker {
             ++found_.side_records;
             const std::size_t v = layout.split_vertex[s.cell], w = layout.split_vertex[j];
             if (deviation != other->deviation[j] || tile.radius[s.cell] != other->radius[j] ||
-                tile.height[v] != other->height[w] ||
+                tile.height[v] != other->height[w] || !same_origin(tile, v, *other, w) ||
                 (!tile.undulation.empty() && tile.undulation[v].m != other->undulation[w].m))
                 problem(tile.root,
                         "record " + std::to_string(s.cell) + " differs from that of tile " + to_string(other->root));
@@ -152,7 +156,7 @@ class Checker {
             problem(root, "is not what the tile above it says of its root");
         const auto& corner = tile_layout().corners[scale_.layers.local_above(root)];
         for (std::size_t v = 0; v < 3; ++v)
-            if (tile.height[v] != above->height[corner[v]] ||
+            if (tile.height[v] != above->height[corner[v]] || !same_origin(tile, v, *above, corner[v]) ||
                 (!tile.undulation.empty() && tile.undulation[v].m != above->undulation[corner[v]].m))
                 problem(root, "corner " + std::to_string(v) + " differs from the tile above it");
     }

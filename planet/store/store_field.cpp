@@ -42,6 +42,19 @@ void StoreField::heights(std::span<const glm::dvec3> normals, std::span<float> o
     }
 }
 
+void StoreField::heights_with_origins(std::span<const glm::dvec3> normals, std::span<float> out,
+                                      std::span<WeighedOrigin> origins) const {
+    heights(normals, out);
+    SurfaceCursor at = cursor();
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        origins[i] = {{1, 1}, 1};
+        if (!is_direction(normals[i])) continue;
+        at.seek(normals[i]);
+        const SurfaceOrigin from = at.origin(normals[i]);
+        if (from.count > 0) origins[i].origin = {from.files[0], from.files[from.count > 1 ? 1 : 0]};
+    }
+}
+
 float StoreField::height_at(const glm::dvec3& normal, int bisection_level) const {
     if (!is_direction(normal)) return std::numeric_limits<float>::quiet_NaN();
     SurfaceCursor at = cursor();

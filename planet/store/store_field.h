@@ -27,6 +27,9 @@ class StoreField final : public ElevationField {
     /// On the finest surface. Fastest where normals that follow each other are near each other. Not a finite direction:
     /// NaN.
     void heights(std::span<const glm::dvec3> normals, std::span<float> out) const override;
+    /// Of a store that does not say where its heights come from: its first file.
+    void heights_with_origins(std::span<const glm::dvec3> normals, std::span<float> out,
+                              std::span<WeighedOrigin> origins) const override;
     /// Of the lattice: mean vertex spacing of the finest level in the cap.
     double spacing(const Cap& cap) const override;
     /// None: a store keeps the lattice, not the samples.

@@ -1,5 +1,6 @@
 #include "planet/store/store_tables.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -68,6 +69,7 @@ std::string checksum_of(const Entries& entries, const std::vector<SourceInfo>& s
              {std::string_view(s.name), std::string_view(s.checksum), std::string_view(s.crs), text_of(s.datum)})
             text.append(part).append("\n");
         text.append(shortest(s.spacing_m)).append("\n");
+        for (const std::string& file : s.files) text.append(file).append("\n");
     }
     return checksum_of(text);
 }
@@ -124,6 +126,30 @@ Ellipsoid ellipsoid_from(const EntryReader& read) {
     return ellipsoid(kept, read.number<double>("ellipsoid_a_m", 1, 1e9), read.number<double>("ellipsoid_f", 0, 0.9));
 }
 
+// Of names of files, one a line.
+std::string lines_of(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) {
+        text.append(name).push_back('\n');
+        std::replace(text.end() - static_cast<std::ptrdiff_t>(name.size()) - 1, text.end() - 1, '\n', ' ');
+    }
+    return text;
+}
+
+std::vector<SourceInfo> read_sources(SqliteFile& file, int format_version, const EntryReader& read) {
+    const std::string sql = std::string("SELECT name, checksum, crs, datum, spacing_m, ") +
+                            (format_version > 3 ? "files" : "''") + " FROM sources ORDER BY rank";
+    SqliteStatement source(file, sql.c_str());
+    std::vector<SourceInfo> sources;
+    while (source.step()) {
+        sources.push_back(
+            {source.text(0), source.text(1), source.text(2), datum_from(source.text(3), read), source.real(4)});
+        std::istringstream lines(source.text(5));
+        for (std::string name; std::getline(lines, name);) sources.back().files.push_back(name);
+    }
+    return sources;
+}
+
 }  // namespace
 
 void create_tables(SqliteFile& file, const StoreMetadata& metadata) {
@@ -134,7 +160,7 @@ void create_tables(SqliteFile& file, const StoreMetadata& metadata) {
     file.run(
         "CREATE TABLE metadata(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
         "CREATE TABLE sources(rank INTEGER PRIMARY KEY, name TEXT, checksum TEXT, crs TEXT, datum TEXT, spacing_m "
-        "REAL);"
+        "REAL, files TEXT);"
         "CREATE TABLE tiles(code INTEGER PRIMARY KEY, data BLOB NOT NULL);"
         "CREATE TABLE unfinished(code INTEGER PRIMARY KEY, data BLOB NOT NULL);");
     write_metadata(file, metadata);
@@ -151,11 +177,11 @@ void write_metadata(SqliteFile& file, const StoreMetadata& m) {
         entry.bind(1, key).bind(2, value).step();
         entry.reset();
     }
-    SqliteStatement source(file, "INSERT INTO sources VALUES(?, ?, ?, ?, ?, ?)");
+    SqliteStatement source(file, "INSERT INTO sources VALUES(?, ?, ?, ?, ?, ?, ?)");
     std::int64_t rank = 0;
     for (const SourceInfo& s : m.sources) {
         source.bind(1, rank++).bind(2, s.name).bind(3, s.checksum).bind(4, s.crs);
-        source.bind(5, text_of(s.datum)).bind(6, s.spacing_m).step();
+        source.bind(5, text_of(s.datum)).bind(6, s.spacing_m).bind(7, lines_of(s.files)).step();
         source.reset();
     }
 }
@@ -167,10 +193,8 @@ StoreMetadata read_metadata(SqliteFile& file) {
     const EntryReader read(entries, file.where());
 
     StoreMetadata m;
-    SqliteStatement source(file, "SELECT name, checksum, crs, datum, spacing_m FROM sources ORDER BY rank");
-    while (source.step())
-        m.sources.push_back(
-            {source.text(0), source.text(1), source.text(2), datum_from(source.text(3), read), source.real(4)});
+    m.format_version = static_cast<int>(file.number("PRAGMA user_version"));
+    m.sources = read_sources(file, m.format_version, read);
     m.complete = read.text("complete") == "1";
     const std::string checksum = read.text("checksum");
     entries.erase("complete");
@@ -181,7 +205,6 @@ StoreMetadata read_metadata(SqliteFile& file) {
     m.datum = datum_from(read.text("vertical_datum"), read);
     m.undulation = read.text("undulation");
     m.quantum_m = read.number<double>("quantum_m", least_quantum_m, most_quantum_m);
-    m.format_version = static_cast<int>(file.number("PRAGMA user_version"));
     if (m.format_version > 2) {
         m.layers.first = read.number<int>("first_tile_level", 1, tile_levels);
         m.vertices_by_level = read.by_level("vertices_by_level");
@@ -198,7 +221,11 @@ StoreMetadata read_metadata(SqliteFile& file) {
 }
 
 TileScale tile_scale(const StoreMetadata& m) {
-    return {{m.ellipsoid, 1.0}, m.quantum_m, !m.undulation.empty(), m.layers};
+    return {{m.ellipsoid, 1.0},
+            m.quantum_m,
+            !m.undulation.empty(),
+            m.layers,
+            static_cast<std::uint32_t>(source_files(m.sources).size())};
 }
 
 }  // namespace planet

@@ -1,5 +1,6 @@
 #include "planet/store/surface_cursor.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "planet/store/tile_sides.h"
@@ -137,6 +138,26 @@ double SurfaceCursor::interpolated_height(const glm::dvec3& n) const {
     for (int k = 0; k < 3; ++k)
         heights[k] = static_cast<double>(step.tile->height[vertex[static_cast<std::size_t>(k)]]);
     return glm::dot(weights(n), heights);
+}
+
+SurfaceOrigin SurfaceCursor::origin(const glm::dvec3& n) const {
+    constexpr double no_weight = 1e-9;  // what rounding makes of 0
+    const Step& step = path_.back();
+    SurfaceOrigin from;
+    if (!step.tile->origins.known()) return from;
+    const glm::dvec3 weight = weights(n);
+    std::array<int, 3> corner{0, 1, 2};
+    std::stable_sort(corner.begin(), corner.end(), [&](int a, int b) { return weight[a] > weight[b]; });
+    const auto& vertex = tile_layout().corners[step.local];
+    for (const int k : corner) {
+        if (weight[k] <= no_weight) break;
+        const HeightOrigin at = step.tile->origins[vertex[static_cast<std::size_t>(k)]];
+        for (const std::uint32_t file : {at.file, at.other}) {
+            const auto end = from.files.begin() + from.count;
+            if (std::find(from.files.begin(), end, file) == end) from.files[from.count++] = file;
+        }
+    }
+    return from;
 }
 
 double SurfaceCursor::undulation(const glm::dvec3& n) const {

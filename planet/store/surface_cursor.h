@@ -15,6 +15,15 @@
 
 namespace planet {
 
+/// The files that a height on the surface is from, by number (HeightOrigin): of the vertex with the greatest weight
+/// first, then those of the other vertices in the order of their weights.
+struct SurfaceOrigin {
+    std::array<std::uint32_t, 6> files{};
+    std::uint32_t count = 0;  ///< 0: it is not known
+
+    friend bool operator==(const SurfaceOrigin&, const SurfaceOrigin&) = default;
+};
+
 /// One thread's. The reader must outlive it.
 class SurfaceCursor {
   public:
@@ -38,6 +47,8 @@ class SurfaceCursor {
     /// The same, linear between the corners' heights: without the sag of the plane, which is a chord of the curved planet
     /// and passes below a level sea by up to side^2 / 8 R, 1.6 m in cells of 9 km. Continuous; equal to height() at corners.
     double interpolated_height(const glm::dvec3& normal) const;
+    /// Where height() and interpolated_height() come from.
+    SurfaceOrigin origin(const glm::dvec3& normal) const;
     /// Of the datum above the ellipsoid, metres, linear between the corners; 0 if the store knows none.
     double undulation(const glm::dvec3& normal) const;
 

@@ -10,7 +10,7 @@
 namespace planet {
 
 std::size_t bytes_of(const Tile& tile) {
-    return sizeof(Tile) + sizeof(GeoidUndulation) * tile.undulation.capacity() +
+    return sizeof(Tile) + sizeof(GeoidUndulation) * tile.undulation.capacity() + tile.origins.bytes() +
            sizeof(float) * (tile.height.capacity() + tile.deviation.capacity() + tile.radius.capacity());
 }
 

@@ -15,6 +15,7 @@
 #include "planet/store/byte_stream.h"
 #include "planet/store/ladder.h"
 #include "planet/store/lattice_code.h"
+#include "planet/store/origin_code.h"
 #include "planet/store/rice_code.h"
 
 namespace planet {
@@ -23,7 +24,7 @@ namespace {
 
 constexpr std::size_t most_payload_bytes = 1 << 16;
 constexpr int compression_level = -1;  // the quickest: after the Rice code the slow ones gain 0.2 %
-constexpr std::uint8_t flag_inner = 1, flag_undulation = 2, flag_whole = 4;
+constexpr std::uint8_t flag_inner = 1, flag_undulation = 2, flag_whole = 4, flag_origins = 8, flag_kinds = 16;
 
 // ---- heights and undulations ----------------------------------------------------------------------------------------
 
@@ -374,7 +375,8 @@ std::vector<std::uint8_t> encode_tile(const BakedTile& baked, const TileScale& s
     out.varint(tile.root.bits());
     out.u8(static_cast<std::uint8_t>(tile.depth));
     out.u8(static_cast<std::uint8_t>((baked.inner() ? flag_inner : 0) | (scale.has_undulation ? flag_undulation : 0) |
-                                     (whole ? flag_whole : 0)));
+                                     (whole ? flag_whole : 0) | (tile.origins.known() ? flag_origins : 0) |
+                                     (tile.origins.kinds().size() > 1 ? flag_kinds : 0)));
     out.f32(tile.resampling);
     write_heights(out, tile.height, scale.quantum_m);
     if (scale.has_undulation) write_undulations(out, tile);
@@ -382,6 +384,7 @@ std::vector<std::uint8_t> encode_tile(const BakedTile& baked, const TileScale& s
         write_inner(out, baked);
     else
         write_leaf(out, baked, whole);
+    write_origins(out, tile.origins);
     return compress(out.bytes());
 }
 
@@ -409,6 +412,7 @@ Tile decode_tile(LocationCode root, std::span<const std::uint8_t> bytes, const T
         read_inner(in, scale, tile);
     else
         read_leaf(in, flags & flag_whole, scale, tile);
+    if (flags & flag_origins) tile.origins = read_origins(in, flags & flag_kinds, tile.height.size(), scale.files);
     if (!in.at_end()) throw MalformedBytes("bytes follow its end");
     return tile;
 }

@@ -18,6 +18,7 @@ struct TileScale {
     double quantum_m = 0.25;      ///< of heights: a power of two
     bool has_undulation = false;  ///< whether tiles hold the datum's height above the ellipsoid
     TileLayers layers = {};
+    std::uint32_t files = 0;  ///< of all sources: none is numbered higher
 };
 
 /// Undulations are whole multiples of this at vertices that split cells of levels below undulation_level (2.7 km apart

@@ -43,6 +43,18 @@ SegmentView view_ahead(const SegmentView& view, const glm::dvec3& velocity_m_s, 
     return ahead;
 }
 
+SegmentView view_after(const SegmentView& before, const SegmentView& now) {
+    SegmentView after = now;
+    after.test.eye += now.test.eye - before.test.eye;
+    after.culling.eye += now.culling.eye - before.culling.eye;
+    for (std::size_t k = 0; k < now.culling.inward.size(); ++k) {
+        const glm::dvec3 turn = now.culling.inward[k] - before.culling.inward[k];
+        if (turn != glm::dvec3(0) && now.culling.inward[k] != glm::dvec3(0))
+            after.culling.inward[k] = glm::normalize(now.culling.inward[k] + turn);
+    }
+    return after;
+}
+
 ResidentTiles::ResidentTiles(const TileCache& cache, const Placement& placement, unsigned threads,
                              const TileReader* reader)
     : cache_(cache),

@@ -46,9 +46,14 @@ struct ResidentCounts {
 /// Where an eye that moves on will be. @param velocity_m_s ecef
 SegmentView view_ahead(const SegmentView& view, const glm::dvec3& velocity_m_s, double seconds);
 
+/// The view after two of a motion that goes on as it is: the eye takes the same step, and the planes turn by as much.
+SegmentView view_after(const SegmentView& before, const SegmentView& now);
+
 /// The functions are for one thread; between them, walks may run on any.
 class ResidentTiles final : public TileSource {
   public:
+    static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+
     /// Waits for the faces. @param cache must outlive this; its limit counts @param threads that load, 0: one for each
     /// processor @param reader where tiles come from, nullptr: the cache
     ResidentTiles(const TileCache& cache, const Placement& placement, unsigned threads = 0,
@@ -87,7 +92,6 @@ class ResidentTiles final : public TileSource {
         LocationCode root;
         ResidentTile* tile;
     };
-    static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
     LoadedTile load(LocationCode root) const;
     void take_in(std::size_t most = unlimited);

@@ -14,11 +14,21 @@ namespace {
 using planet::degrees;
 using planet::wgs84;
 
-std::string line_text(double angle, char positive, char negative) {
-    const auto minutes = std::lround(std::abs(angle) / degrees * 60);
-    std::string text = std::to_string(minutes / 60) + "\xc2\xb0";
-    if (minutes % 60 != 0) text += " " + std::to_string(minutes % 60) + "\xe2\x80\xb2";
-    return minutes == 0 ? text : text + " " + (angle < 0 ? negative : positive);
+std::string degrees_text(long minutes) {
+    const std::string text = std::to_string(minutes / 60) + "\xc2\xb0";
+    return minutes % 60 == 0 ? text : text + " " + std::to_string(minutes % 60) + "\xe2\x80\xb2";
+}
+
+std::string parallel_name(double latitude) {
+    const auto minutes = std::lround(std::abs(latitude) / degrees * 60);
+    return minutes == 0 ? "Equator" : degrees_text(minutes) + (latitude < 0 ? " S" : " N");
+}
+
+std::string meridian_name(double longitude) {
+    const double turned = std::remainder(longitude, 360 * degrees);
+    const auto minutes = std::lround(std::abs(turned) / degrees * 60);
+    if (minutes == 0) return "Prime Meridian";
+    return minutes == 180 * 60 ? degrees_text(minutes) : degrees_text(minutes) + (turned < 0 ? " W" : " E");
 }
 
 }  // namespace
@@ -51,13 +61,14 @@ std::vector<LayerName> graticule_names(const Camera& camera, double step) {
         if (glm::dot(glm::normalize(to_eye), normal) < least_slant) return;
         names.push_back({std::move(text), normal, LayerName::Place::above_right});
     };
-    add(parallel, meridian, line_text(parallel, 'N', 'S'));
+    add(parallel, meridian, parallel_name(parallel));
+    // Where lines cross there is room for one name: the middle meridian has its own halfway to the next parallel.
+    add(parallel + std::copysign(0.5 * step, about.latitude - parallel), meridian, meridian_name(meridian));
     for (int line = 1; line <= most_lines; ++line)
         for (const int i : {line, -line}) {
             const double longitude = meridian + i * step;
-            add(parallel + i * step, meridian, line_text(parallel + i * step, 'N', 'S'));
-            if (line * step < 180 * degrees)
-                add(parallel, longitude, line_text(std::remainder(longitude, 360 * degrees), 'E', 'W'));
+            add(parallel + i * step, meridian, parallel_name(parallel + i * step));
+            if (line * step < 180 * degrees) add(parallel, longitude, meridian_name(longitude));
         }
     return names;
 }

@@ -17,9 +17,9 @@ constexpr glm::dvec2 above_right_px(6, -10);
 
 struct Box {
     double left, top, right, bottom;
-    bool touches(const Box& other) const {
-        return left < other.right + gap_px && other.left < right + gap_px && top < other.bottom + gap_px &&
-               other.top < bottom + gap_px;
+    bool touches(const Box& other, double gap) const {
+        return left < other.right + gap && other.left < right + gap && top < other.bottom + gap &&
+               other.top < bottom + gap;
     }
 };
 
@@ -51,6 +51,7 @@ std::vector<PlacedLabel> place_labels(std::span<const Layer* const> layers, cons
                                       const std::function<double(const std::string&)>& width_of) {
     std::vector<PlacedLabel> labels;
     std::vector<Box> boxes;
+    const double gap = gap_px * size / label_size_px;
     const planet::Culling culling = camera.culling({0, 0, camera.width, camera.height}, ground.culling.occluder_radius);
     for (std::size_t i = layers.size(); i-- > 0;)
         for (const LayerName& name : layers[i]->names) {
@@ -66,7 +67,7 @@ std::vector<PlacedLabel> place_labels(std::span<const Layer* const> layers, cons
             const Box box{left, middle - 0.5 * size, left + width, middle + 0.5 * size};
             // A line has other places for its name than one where it would be cut off.
             if (name.at == LayerName::Place::above_right && (box.right > camera.width || box.top < 0)) continue;
-            if (std::ranges::any_of(boxes, [&](const Box& b) { return b.touches(box); })) continue;
+            if (std::ranges::any_of(boxes, [&](const Box& b) { return b.touches(box, gap); })) continue;
             if (is_hidden(place, camera, ground)) continue;
             boxes.push_back(box);
             labels.push_back({&name.text, {left, middle}, static_cast<float>(width)});

@@ -1,15 +1,11 @@
 #include "render/passes/layer_meshes.h"
 
-#include <algorithm>
 #include <array>
 
 namespace render {
 
 namespace {
 
-/// What a mesh and the terrain may be off along the view, a coarse one while the eye moves, too: nearer than that it is the
-/// mesh that is seen. Not more than a part of the distance.
-constexpr double lift_m = 500;
 constexpr GLuint picture_unit = 8;  // beyond those of the terrain, which stay bound
 
 Texture texture_of(const PlacedMesh& mesh) {
@@ -77,7 +73,7 @@ void LayerMeshPass::draw(std::span<const Layer* const> layers, const Camera& cam
                          const TerrainLook& look) {
     program_.use();
     set_terrain_uniforms(program_, camera, part, look);
-    const auto lift = static_cast<float>(lift_m * std::max(look.exaggeration, 1.0));
+    const auto lift = static_cast<float>(mesh_lift_m(look.exaggeration));
     for (const Layer* layer : layers) {
         if (!layer->mesh) continue;
         const OnGpu& mesh = on_gpu(*layer->mesh, look.exaggeration);
@@ -98,7 +94,7 @@ void LayerMeshPass::draw(std::span<const Layer* const> layers, const Camera& cam
         gl().StencilFunc(GL_ALWAYS, 1, 0xff);
         gl().StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
         triangles();
-        gl().ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        gl().ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
         gl().DepthFunc(GL_EQUAL);
         gl().Enable(GL_BLEND);
         gl().BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);

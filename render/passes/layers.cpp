@@ -64,12 +64,15 @@ LayerPass::Pieces LayerPass::drape(const GeodesicLines& lines, const View& view)
 void LayerPass::cover(const Pieces& pieces, double half_width, double opacity, const View& view) {
     if (pieces.count == 0) return;
     view.target.bind_color();
-    view.target.depth().bind(0);
+    (view.terrain_depth != nullptr ? *view.terrain_depth : view.target.depth()).bind(0);
+    view.target.depth().bind(1);
     line_.use();
     line_.set("part", glm::vec4(view.part.x, view.part.y, view.part.width, view.part.height));
     line_.set("half_width", static_cast<float>(half_width));
     line_.set("opacity", static_cast<float>(opacity));
     line_.set("pixel_slack", static_cast<float>(1 - (1.5 + half_width) / view.camera.focal_px));
+    line_.set("lift", view.terrain_depth != nullptr ? static_cast<float>(view.mesh_lift_m) : 0.0f);
+    line_.set("near", static_cast<float>(view.camera.near_m));
     gl().BlendEquation(GL_MAX);
     pieces.array.bind();
     gl().DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, pieces.count);

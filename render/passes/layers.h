@@ -14,7 +14,7 @@ namespace render {
 
 class LayerPass {
   public:
-    /// Farther from a pixel no depth is asked for: half of the largest mark, with its rim.
+    /// Farther from a pixel no depth is asked for, at a pixel_scale of 1: half of the largest mark, with its rim.
     static constexpr int reach_px = 40;
 
     /// With the context that is current.
@@ -23,9 +23,13 @@ class LayerPass {
     struct View {
         const Camera& camera;  ///< of the whole picture
         PicturePart part;
-        double pixel_scale = 1;  ///< of widths: below 1 where a picture is drawn smaller than it is shown
+        double pixel_scale = 1;  ///< of widths: below 1 where a picture is drawn smaller than it is shown, above where
+                                 ///< the pixels of a display are small
         DrapeGround& ground;
         const Framebuffer& target;  ///< bound, with the terrain's depth, and a stencil
+        /// Of the target before meshes were drawn; null: none was.
+        const Texture* terrain_depth = nullptr;
+        double mesh_lift_m = 0;  ///< what such a mesh may be in front of a line on the terrain and not hide it
     };
     /// Leaves the target's alpha at 1.
     void draw(std::span<const Layer* const> layers, const View& view);

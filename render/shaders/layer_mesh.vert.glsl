@@ -1,5 +1,6 @@
 #version 450 core
 #include "grid.glsl"
+#include "mesh_lift.glsl"
 
 layout(location = 2) in vec3 normal;   ///< ecef, unit
 layout(location = 3) in float height;  ///< m above the geoid, not exaggerated
@@ -21,7 +22,7 @@ void main() {
     view = view_from_grid();
     gl_Position = clip_from_ecef * vec4(view, 1.0);
     float w = gl_Position.w;
-    if (w > 0.0) gl_Position.z *= w / (w - min(lift, 0.03 * w));
+    if (w > 0.0) gl_Position.z *= w / (w - mesh_lift(lift, w));
     ground = normal;
     orthometric = height;
     own_color = own.rgb;

@@ -5,7 +5,7 @@
 uniform ivec3 show;       ///< sides; what colours mean: 0 none, 1 levels, 2 segments, 3 deviations; curve
 uniform vec3 eye;         ///< ecef, m
 uniform float graticule;  ///< rad between its lines; 0: none
-uniform float pixel_scale;  ///< of widths: below 1 where the picture is shown larger
+uniform float pixel_scale;  ///< of widths: below 1 where the picture is shown larger, above where its pixels are small
 
 in vec3 barycentric;
 in vec3 view;
@@ -39,7 +39,7 @@ float line(float d, float slope, float width) {
 
 /// Lines fade where triangles are hardly larger than the lines.
 float fade(float slope) {
-    return 1.0 - smoothstep(0.12, 0.45, slope);
+    return 1.0 - smoothstep(0.12, 0.45, slope * pixel_scale);
 }
 
 vec4 over(vec4 below, vec3 paint, float alpha) {

@@ -18,6 +18,7 @@
 #include "planet/mesh/segments.h"
 #include "planet/octahedron/cell_metrics.h"
 #include "planet/store/store_field.h"
+#include "planet/streaming/mesh_ahead.h"
 #include "planet/streaming/resident_tiles.h"
 #include "planet/streaming/store_tiles.h"
 #include "render/app/picture/earth_store.h"
@@ -32,6 +33,7 @@
 namespace {
 
 using namespace render;
+using planet::SegmentView;
 using planet::wgs84;
 
 constexpr int width = 1920, height = 1080;
@@ -245,22 +247,36 @@ BENCHMARK_CAPTURE(terrain_pass_over_static_list, blanca, blanca)
 /// frame updates, uploads and draws the terrain's shading, without patches of normals, sky and stars. Then at rest.
 class Flight {
   public:
+    /// What is known of the next frame while one is drawn: nothing; that the motion goes on; its view, as where a path is
+    /// flown.
+    enum class Expected { nothing, guessed, known };
     static constexpr int frames = 600, frames_ahead = 10;
     static constexpr std::size_t tiles_a_frame = 400;  // as the viewer, which draws five frames a second here
 
     struct Times {
         std::vector<double> update, upload, draw;  // seconds
+        std::vector<double> ahead;                 // seconds of another thread, while a frame is drawn
         std::vector<double> sent;                  // bytes
         std::vector<double> pending;               // tiles that the view needs and that have not come
     };
 
+    explicit Flight(Expected expected) : expected_(expected) {}
+
     Times fly() {
         Times t;
+        SegmentView before;
         for (int frame = 0; frame < frames; ++frame) {
             const Camera now = camera(frame);
-            step(now, view_of(camera(std::min(frame + frames_ahead, frames - 1))), t);
+            const SegmentView view = view_of(now);
+            step(view, view_ahead(frame), t);
+            if (expected_ == Expected::known && frame + 1 < frames)
+                mesh_ahead_.begin(view_of(camera(frame + 1)), view_ahead(frame + 1), tiles_a_frame, 1);
+            if (expected_ == Expected::guessed && frame > 0)
+                mesh_ahead_.begin(planet::view_after(before, view), view_ahead(frame + 1), tiles_a_frame, 1);
             t.draw.push_back(draw(now));
+            before = view;
         }
+        mesh_ahead_.finish();
         return t;
     }
     /// Once more, where the flight ends and every tile has come.
@@ -268,7 +284,7 @@ class Flight {
         const Camera last = camera(frames - 1);
         segments_.invalidate(tiles_.settle(view_of(last)));
         Times t;
-        for (int frame = 0; frame < 50; ++frame) step(last, view_of(last), t);
+        for (int frame = 0; frame < 50; ++frame) step(view_of(last), view_of(last), t);
         return t;
     }
     std::size_t triangles() const { return segments_.leaf_count(); }
@@ -287,8 +303,8 @@ class Flight {
                            focal_length_px(40 * planet::degrees, width, height), width, height);
     }
 
-    planet::SegmentView view_of(const Camera& camera) const {
-        planet::SegmentView view;
+    SegmentView view_of(const Camera& camera) const {
+        SegmentView view;
         view.test = {camera.eye, planet::split_reach(camera.focal_px, camera.tan_corner(), 0.5)};
         view.culling = camera.culling(part, wgs84.b - 600);
         view.radius_m = wgs84.mean_radius();
@@ -297,12 +313,15 @@ class Flight {
         return view;
     }
 
-    void step(const Camera& camera, const planet::SegmentView& ahead, Times& t) {
-        const planet::SegmentView view = view_of(camera);
+    SegmentView view_ahead(int frame) const { return view_of(camera(std::min(frame + frames_ahead, frames - 1))); }
+
+    void step(const SegmentView& view, const SegmentView& ahead, Times& t) {
         t.update.push_back(seconds([&] {
-            segments_.invalidate(tiles_.update(view, &ahead, tiles_a_frame));
+            const bool prepared = mesh_ahead_.finish();
+            segments_.invalidate(tiles_.update(view, &ahead, prepared ? 0 : tiles_a_frame));
             segments_.update(tiles_, view, static_cast<int>(w_.threads));
         }));
+        t.ahead.push_back(mesh_ahead_.seconds());
         t.pending.push_back(static_cast<double>(tiles_.residency().pending));
         layers_.assign(segments_.segments().size(), -1);
         t.upload.push_back(seconds([&] { pass_.upload(segments_, layers_); }));
@@ -342,6 +361,8 @@ class Flight {
     World& w_ = world();  // first: the rest needs its context
     planet::ResidentTiles tiles_{w_.field.cache(), {wgs84, 1}, std::max(1u, w_.threads / 2)};
     planet::Segments segments_;
+    planet::MeshAhead mesh_ahead_{tiles_, segments_};
+    Expected expected_;
     std::vector<std::int32_t> layers_;
     TerrainPass pass_;
     AtmosphereTables tables_ = make_tables();
@@ -358,13 +379,15 @@ double percentile(std::vector<double> v, double share) {
     return *at;
 }
 
-void flight(benchmark::State& state) {
-    Flight flight;
+void flight(benchmark::State& state, Flight::Expected expected) {
+    Flight flight(expected);
     for (auto _ : state) {
         const Flight::Times moving = flight.fly(), rest = flight.rest();
         const double frame = mean(moving.update) + mean(moving.upload) + mean(moving.draw);
         state.SetIterationTime(frame);
         state.counters["update_share"] = mean(moving.update) / frame;
+        state.counters["ahead_share"] = mean(moving.ahead) / frame;
+        state.counters["ahead_ms"] = 1e3 * median(moving.ahead);
         state.counters["upload_share"] = mean(moving.upload) / frame;
         state.counters["update_ms"] = 1e3 * median(moving.update);
         state.counters["update_p99_ms"] = 1e3 * percentile(moving.update, 0.99);
@@ -379,7 +402,18 @@ void flight(benchmark::State& state) {
         state.counters["triangles"] = static_cast<double>(flight.triangles());
     }
 }
-BENCHMARK(flight)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(flight, nothing, Flight::Expected::nothing)
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(flight, guessed, Flight::Expected::guessed)
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(flight, known, Flight::Expected::known)
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -24,7 +24,7 @@ struct ScatteredBlend {
         std::uniform_real_distribution<double> place(0, 0.2), reach(0.0005, 0.002), difference(-20, 20);
         for (std::size_t k = 0; k < count; ++k)
             points.push_back({at(place(random), place(random)), difference(random), reach(random),
-                              1.0 + static_cast<double>(k % 3)});
+                              1.0f + static_cast<float>(k % 3), static_cast<std::uint32_t>(k)});
     }
 
     // By the formula, point by point.
@@ -34,7 +34,7 @@ struct ScatteredBlend {
             const double r = glm::distance(p, q.normal), D = q.reach + clearance;
             least = std::min(least, std::max(0.0, r - clearance) / q.reach);
             if (r >= D) continue;
-            const double w = q.count * std::pow((D - r) / (D * r), 2);
+            const double w = static_cast<double>(q.count) * std::pow((D - r) / (D * r), 2);
             weights += w;
             total += w * q.difference;
         }
@@ -81,6 +81,33 @@ TEST(BorderBlend, PlacesTogetherGetTheBitsTheyGetAlone) {
     EXPECT_EQ(corrections[77], 3.0);
     EXPECT_GT(changed, 200u);
     EXPECT_LT(changed, 2000u);
+}
+
+// The weight is the smooth step of the least distance / reach, and the file that point's.
+TEST(BorderBlend, SaysWhoseBorderIsNearest) {
+    constexpr double clearance = 1e-5;
+    ScatteredBlend some(3000);
+    const BorderBlend blend(some.points, clearance);
+    std::uniform_real_distribution<double> place(-0.01, 0.21);
+    std::size_t shared = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const glm::dvec3 p = at(place(some.random), place(some.random));
+        double least = 1, correction = 0;
+        std::uint32_t file = 0;
+        for (const auto& q : some.points) {
+            const double ratio = (glm::distance(p, q.normal) - clearance) / q.reach;
+            if (ratio >= least) continue;
+            least = ratio;
+            file = q.file;
+        }
+        BorderShare share{-1, 77};
+        blend.add({&p, 1}, {&correction, 1}, {&share, 1});
+        const double s = 1 - std::max(0.0, least);
+        EXPECT_NEAR(share.weight, least < 1 ? s * s * (3 - 2 * s) : -1, 1e-9);
+        EXPECT_EQ(share.file, least < 1 ? file : 77u);
+        shared += least < 1;
+    }
+    EXPECT_GT(shared, 500u);
 }
 
 TEST(BorderBlend, WithoutPointsChangesNothing) {

@@ -88,6 +88,8 @@ TEST(MeshAttributes, PictureOfAGlb) {
     looks.picture = testing::png_bytes(3, 2, 8, [](int x, int y) { return static_cast<unsigned>(x + y); });
     EXPECT_EQ(through_file(mesh, looks, ".glb").picture, looks.picture);
     EXPECT_EQ(through_file(mesh, looks, ".ply").picture, "");
+    EXPECT_EQ(through_file(mesh, looks, ".glb").base_color, glm::vec4(1));
+    EXPECT_EQ(through_file(mesh, {}, ".glb").base_color, glm::vec4(glm::vec3(0.6f), 1));
 }
 
 // The first corner's; and none at all where a vertex has none.

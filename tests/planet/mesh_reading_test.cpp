@@ -171,6 +171,35 @@ TEST(MeshReading, GlbOfNodesStripsFansAndStrides) {
     EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {2, 1, 3}, {4, 6, 5}, {4, 7, 6}, {11, 9, 10}}));
 }
 
+// Of its strip, and of the two parts that a mirror shows.
+TEST(MeshReading, GlbOfMaterials) {
+    const auto looks_of = [](const std::string& first, const std::string& second) {
+        std::string json = foreign_json;
+        const auto put = [&](const std::string& before, const std::string& text) {
+            const std::size_t at = json.find(before);
+            EXPECT_NE(at, json.npos);
+            json.insert(at, text);
+        };
+        put(R"("mode":5)", R"("material":0,)");
+        put(R"("indices":2)", R"("material":1,)");
+        put(R"("meshes":)", R"("materials":[{"pbrMetallicRoughness":{"baseColorFactor":)" + first +
+                                R"(}},{"pbrMetallicRoughness":{"baseColorFactor":)" + second + "}}],");
+        const TemporaryFolder folder;
+        write_bytes(folder / "m.glb", glb_of(json, foreign_binary()));
+        MeshLooks looks;
+        read_mesh(folder / "m.glb", nullptr, &looks);
+        return looks;
+    };
+    const glm::vec4 red(1, 0, 0.25f, 1), white(1), blue(0, 0, 1, 0.5f);
+    const MeshLooks two = looks_of("[1,0,0.25,1]", "[0,0,1,0.5]");
+    EXPECT_EQ(two.base_color, white);
+    ASSERT_EQ(two.colors.size(), 12u);
+    for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(two.colors[i], i < 4 ? red : i < 8 ? white : blue) << i;
+    const MeshLooks plain = looks_of("[1,1,1,1]", "[1,1,1]");  // one that is none
+    EXPECT_EQ(plain.base_color, white);
+    EXPECT_TRUE(plain.colors.empty());
+}
+
 TEST(MeshReading, GlbThatIsNotReadSaysWhy) {
     const auto with = [](std::string_view part, std::string_view instead) {
         std::string json = foreign_json;

@@ -135,8 +135,8 @@ TEST_F(StoreFile, FilesThatAreNoStoreAreRefusedInOneLine) {
     EXPECT_TRUE(says(refusal(path("short.octa")), "not an elevation store"));
     sql(path("other.octa"), "CREATE TABLE t(x)");
     EXPECT_TRUE(says(refusal(path("other.octa")), "SQLite"));
-    sql(baked("newer.octa"), "PRAGMA user_version = 4");
-    EXPECT_TRUE(says(refusal(path("newer.octa")), "version 4 is newer"));
+    sql(baked("newer.octa"), "PRAGMA user_version = 5");
+    EXPECT_TRUE(says(refusal(path("newer.octa")), "version 5 is newer"));
     BakeOptions on_mars = options();
     on_mars.ellipsoid = mars;
     bake(field(), on_mars, path("mars.octa"));
@@ -231,7 +231,7 @@ TEST_F(StoreFile, CraftedTilesNeverCrash) {
     ASSERT_EQ(sqlite3_open(file.c_str(), &db), SQLITE_OK);
     sqlite3_stmt* select = nullptr;
     sqlite3_prepare_v2(db, "SELECT code, data FROM tiles ORDER BY code", -1, &select, nullptr);
-    const TileScale scale{Placement{}, 0.25, true, {}};
+    const TileScale scale{Placement{}, 0.25, true, {}, 1};
     std::mt19937 random(17);
     int decoded = 0, refused = 0;
     while (sqlite3_step(select) == SQLITE_ROW) {

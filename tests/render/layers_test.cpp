@@ -231,14 +231,28 @@ std::vector<std::string> texts_of(const std::vector<LayerName>& names) {
 
 TEST(Graticule, LinesAreNamedFromTheMiddleOn) {
     const auto texts = texts_of(graticule_names(above(9, 41, 1e6), 5 * degrees));
-    ASSERT_GT(texts.size(), 5u);
-    EXPECT_EQ((std::vector<std::string>(texts.begin(), texts.begin() + 5)),
-              (std::vector<std::string>{"40\u00b0 N", "45\u00b0 N", "15\u00b0 E", "35\u00b0 N", "5\u00b0 E"}));
+    ASSERT_GT(texts.size(), 6u);
+    EXPECT_EQ(
+        (std::vector<std::string>(texts.begin(), texts.begin() + 6)),
+        (std::vector<std::string>{"40\u00b0 N", "10\u00b0 E", "45\u00b0 N", "15\u00b0 E", "35\u00b0 N", "5\u00b0 E"}));
     const auto minutes = texts_of(graticule_names(above(-7.49, 0.01, 1e5), 0.5 * degrees));
-    EXPECT_EQ(minutes.front(), "0\u00b0");
-    EXPECT_EQ(minutes[2], "7\u00b0 W");
-    EXPECT_EQ(minutes[4], "8\u00b0 W");
-    EXPECT_EQ(minutes[1], "0\u00b0 30\u2032 N");
+    EXPECT_EQ((std::vector<std::string>(minutes.begin(), minutes.begin() + 6)),
+              (std::vector<std::string>{"Equator", "7\u00b0 30\u2032 W", "0\u00b0 30\u2032 N", "7\u00b0 W",
+                                        "0\u00b0 30\u2032 S", "8\u00b0 W"}));
+}
+
+// Halfway towards the next parallel, on the side of the picture's middle.
+TEST(Graticule, TheMiddleMeridianHasItsName) {
+    const auto at = [](double longitude, double latitude) {
+        return graticule_names(above(longitude, latitude, 1e6), 5 * degrees).at(1);
+    };
+    EXPECT_EQ(at(1, 41).text, "Prime Meridian");
+    EXPECT_NEAR(glm::distance(at(1, 41).normal, normal(0, 42.5)), 0, 1e-12);
+    EXPECT_NEAR(glm::distance(at(-1, -41).normal, normal(0, -42.5)), 0, 1e-12);
+    EXPECT_EQ(at(179, 10.5).text, "180\u00b0");
+    EXPECT_EQ(at(-178, 9.5).text, "180\u00b0");
+    EXPECT_NEAR(glm::distance(at(-178, 9.5).normal, normal(180, 7.5)), 0, 1e-12);
+    EXPECT_EQ(at(174, 0).text, "175\u00b0 E");
 }
 
 // No parallel beyond 90 degrees, no meridian twice, no name where only sky is in the middle.
@@ -262,6 +276,25 @@ TEST(Graticule, APictureThatIsShownLargerHasTheSameLines) {
     quarter.focal_px *= 0.25;
     EXPECT_EQ(graticule_step(camera, 1), graticule_step(quarter, 0.25));
     EXPECT_LT(graticule_step(camera, 1), graticule_step(quarter, 1));
+}
+
+// Twice the size: twice as far from their places, and from each other.
+TEST(Labels, GrowWithTheirGaps) {
+    const Camera camera = above(10, 20, 1e6, 800), large = above(10, 20, 1e6, 1600);
+    Layer layer;
+    const glm::dvec3 places[] = {normal(10, 20), normal(10.53, 20)};
+    for (const glm::dvec3& place : places) layer.names.push_back({"x", place, LayerName::Place::beside_mark});
+    const Layer* const layers[] = {&layer};
+    const auto placed = [&](const Camera& c, double scale, double width) {
+        const double size = scale * label_size_px;
+        return place_labels(layers, c, level_ground(c), size, [&](const std::string&) { return scale * width; });
+    };
+    for (const double width : {50.0, 57.0, 80.0}) {
+        const auto once = placed(camera, 1, width), twice = placed(large, 2, width);
+        ASSERT_EQ(once.size(), twice.size()) << width;
+        EXPECT_EQ(once.size(), width > 55 ? 1u : 2u);
+        EXPECT_NEAR(static_cast<double>(twice[0].at.x), 2 * static_cast<double>(once[0].at.x), 1);
+    }
 }
 
 TEST(Labels, CharactersOfAnyBytes) {

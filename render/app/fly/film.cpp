@@ -7,11 +7,10 @@
 #include "planet/error.h"
 #include "planet/geodesy/geodetic.h"
 #include "planet/geodesy/sun.h"
-#include "render/app/picture/globe_looks.h"
+#include "render/app/picture/part_painter.h"
 #include "render/app/picture/steps.h"
 #include "render/app/view/globe_data.h"
 #include "render/app/view/live_mesh.h"
-#include "render/gl/framebuffer.h"
 #include "render/viewer/flight_clearance.h"
 
 namespace render {
@@ -38,6 +37,7 @@ class Film {
           render_(options.render),
           output_(output),
           threads_(render_.thread_count()),
+          in_parts_(std::max(render_.size.width, render_.size.height) > render_.part_side),
           tables_(beside(threads_, [] { return make_tables(); })),
           context_(Context::create({.backend = render_.backend})),
           data_(steps_.time("load", [&] { return load(render_); })),
@@ -126,6 +126,34 @@ class Film {
         });
     }
 
+    void draw_frame(long frame) {
+        const double seconds = seconds_of(frame);
+        const FlightView view = path_.at(seconds);
+        const Camera camera = camera_at(seconds, view);
+        if (view.exaggeration != render_.exaggeration) {
+            render_.exaggeration = data_.surface->exaggeration = view.exaggeration;
+            mesh_.place_anew();
+        }
+        if (in_parts_) {
+            begin_next(frame, view);
+            write(frame, draw_in_parts(camera));
+        } else {
+            settle(seconds, camera);
+            begin_next(frame, view);
+            write(frame, draw_at_once(camera));
+        }
+    }
+
+    /// What other threads do for the next frame while this one is drawn.
+    void begin_next(long frame, const FlightView& view) {
+        looks_.set_sky(tables_.get(), air_.get(), view.time);
+        const long next = next_to_draw(frame + 1);
+        begin_air(next);
+        if (in_parts_ || next > report_.last_frame) return;
+        const FlightView coming = path_.at(seconds_of(next));
+        if (coming.exaggeration == view.exaggeration) mesh_.make_next(camera_at(seconds_of(next), coming));
+    }
+
     void settle(double seconds, const Camera& camera) {
         constexpr double ahead_s = 0.5;
         const double later = std::min(seconds + ahead_s, path_.duration());
@@ -135,58 +163,66 @@ class Film {
             looks_.terrain().upload(mesh_.segments(), mesh_.patches().layers());
             looks_.overlay().upload(mesh_.segments(), mesh_.tiles());
         });
-        report_.triangles_max = std::max(report_.triangles_max, mesh_.segments().leaf_count());
-        report_.deviation_max_m = std::max(report_.deviation_max_m, mesh_.deviation_m());
-        report_.pixel_deviation_max = std::max(report_.pixel_deviation_max, mesh_.pixel_deviation());
+        report_.tiles = mesh_.counts();
+        note_mesh(mesh_.segments().leaf_count(), mesh_.deviation_m(), mesh_.pixel_deviation());
     }
 
-    void draw_frame(long frame) {
-        const double seconds = seconds_of(frame);
-        const FlightView view = path_.at(seconds);
-        const Camera camera = camera_at(seconds, view);
-        if (view.exaggeration != render_.exaggeration) {
-            render_.exaggeration = data_.surface->exaggeration = view.exaggeration;
-            mesh_.place_anew();
-        }
-        settle(seconds, camera);
-        looks_.set_sky(tables_.get(), air_.get(), view.time);
-        begin_air(next_to_draw(frame + 1));
-        std::vector<std::uint8_t> rgba = steps_.time("draw", [&] {
+    void note_mesh(std::size_t triangles, double deviation_m, double pixel_deviation) {
+        report_.triangles_max = std::max(report_.triangles_max, triangles);
+        report_.deviation_max_m = std::max(report_.deviation_max_m, deviation_m);
+        report_.pixel_deviation_max = std::max(report_.pixel_deviation_max, pixel_deviation);
+    }
+
+    /// @return RGB, as the other one
+    std::vector<std::uint8_t> draw_at_once(const Camera& camera) {
+        return steps_.time("draw", [&] {
             const int samples = looks_.samples(render_, camera, context_.limits().samples);
             if (!target_ || target_.samples() != samples)
                 target_ = Framebuffer(camera.width, camera.height, looks_.target_options(samples));
             target_.bind();
             target_.clear(0, 0, 0, 1);
             const PicturePart whole{0, 0, camera.width, camera.height};
-            DrapeGround ground = data_.surface->for_layers(mesh_.segments(), camera, whole);
+            DrapeGround ground = data_.surface->for_layers(mesh_.segments(), camera, whole, render_.drawn_scale());
             looks_.draw({.camera = camera,
                          .part = whole,
-                         .exaggeration = view.exaggeration,
+                         .exaggeration = render_.exaggeration,
                          .patches = mesh_.patches().texture(),
                          .ground = ground,
                          .morph_reach = mesh_.morph_reach(),
-                         .relief = render_.shows(Overlay::relief)},
+                         .relief = render_.shows(Overlay::relief),
+                         .pixel_scale = render_.drawn_scale()},
                         target_);
-            return target_.read_rgba8();
+            return rgb_of(target_.read_rgba8());
         });
-        write(frame, std::move(rgba));
     }
 
-    void write(long frame, std::vector<std::uint8_t> rgba) {
+    std::vector<std::uint8_t> draw_in_parts(const Camera& camera) {
+        std::vector<std::uint8_t> rgb;
+        PartPainter parts(render_, *data_.surface, camera, steps_);
+        parts.paint(looks_, context_.limits().samples, {.write = [&](const std::vector<std::uint8_t>& band, int) {
+                        rgb.insert(rgb.end(), band.begin(), band.end());
+                    }});
+        const PaintedParts& painted = parts.painted();
+        report_.tiles = parts.counts();
+        note_mesh(painted.triangles, painted.deviation_max_m, painted.pixel_deviation_max);
+        return rgb;
+    }
+
+    void write(long frame, std::vector<std::uint8_t> rgb) {
         if (writing_.valid()) writing_.get();
-        writing_ = beside(threads_, [this, frame, pixels = std::move(rgba)]() mutable {
-            steps_.time("write", [&] { output_.write(frame, rgb_in_place(pixels)); });
+        writing_ = beside(threads_, [this, frame, pixels = std::move(rgb)] {
+            steps_.time("write", [&] { output_.write(frame, pixels); });
         });
     }
 
-    static std::span<const std::uint8_t> rgb_in_place(std::vector<std::uint8_t>& rgba) {
+    static std::vector<std::uint8_t> rgb_of(std::vector<std::uint8_t> rgba) {
         const std::size_t count = rgba.size() / 4;
         for (std::size_t i = 1; i < count; ++i) std::copy_n(&rgba[4 * i], 3, &rgba[3 * i]);
-        return std::span(rgba).first(3 * count);
+        rgba.resize(3 * count);
+        return rgba;
     }
 
     void fill_report() {
-        report_.tiles = mesh_.counts();
         report_.damage = data_.surface->field.cache().damage();
         report_.backend = backend_name(context_.backend());
         report_.gl_version = context_.gl_version();
@@ -198,6 +234,7 @@ class Film {
     RenderOptions render_;  ///< of the frame: exaggeration changes
     FrameOutput& output_;
     unsigned threads_;
+    bool in_parts_;  ///< as a picture of this size is: frames that are larger than what is drawn at once
     Steps steps_;
     FilmReport report_;
     std::shared_future<AtmosphereTables> tables_;

@@ -36,7 +36,7 @@ struct FilmReport {
 };
 
 inline constexpr long most_frames = 1'000'000;
-inline constexpr int film_side_max = 8192;  ///< pixels: a frame is drawn at once
+inline constexpr int film_side_max = 8192;  ///< pixels: a frame is in memory as a whole
 
 /// Draws the frames. Throws planet::Error as draw_picture() does, and bad_usage if FilmOptions::frames are not in the
 /// flight or it has more than most_frames.

@@ -57,9 +57,10 @@ glm::dvec3 DrawnSurface::above_ground(const glm::dvec3& eye, double exaggerated,
     return p.h.m < floor ? planet::ecef_from_normal(wgs84, p.normal, {floor}) : eye;
 }
 
-DrapeGround DrawnSurface::for_layers(const planet::Segments& segments, const Camera& camera,
-                                     const PicturePart& part) const {
-    constexpr int border = 64;  // of what reaches into the part from beside it, such as wide lines and labels
+DrapeGround DrawnSurface::for_layers(const planet::Segments& segments, const Camera& camera, const PicturePart& part,
+                                     double scale) const {
+    const int border = static_cast<int>(
+        64 * std::max(scale, 1.0));  // of what reaches into the part from beside it, such as wide lines and labels
     const PicturePart wider{part.x - border, part.y - border, part.width + 2 * border, part.height + 2 * border};
     return {.drawn = planet::SegmentSurface(segments),
             .height = [this](const glm::dvec3& normal) { return ground(normal); },

@@ -28,7 +28,9 @@ struct DrawnSurface {
     /// The radius of a ball about the planet's centre below all terrain, m.
     double occluder_radius() const;
     /// What layers lie on in a part of a picture. Refers to this and to the segments.
-    DrapeGround for_layers(const planet::Segments& segments, const Camera& camera, const PicturePart& part) const;
+    /// @param scale see RenderOptions
+    DrapeGround for_layers(const planet::Segments& segments, const Camera& camera, const PicturePart& part,
+                           double scale) const;
     /// The drawn ground at a unit geodetic normal, exaggeration and geoid included: metres above the ellipsoid.
     double ground(const glm::dvec3& normal) const { return ground(normal, exaggeration); }
     /// The same were it drawn with another exaggeration.

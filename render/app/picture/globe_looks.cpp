@@ -5,6 +5,7 @@
 #include "planet/error.h"
 #include "planet/geodesy/earth_rotation.h"
 #include "planet/geodesy/geodetic.h"
+#include "render/gl/checks.h"
 #include "render/layers/graticule.h"
 #include "render/picture/relief_patches.h"
 
@@ -96,16 +97,48 @@ void GlobeLooks::draw_opaque(const Frame& frame) {
 
 void GlobeLooks::draw_blended(const Frame& frame, const Framebuffer& target) {
     sky_->bind(frame.camera, frame.part);
-    if (mesh_pass_) mesh_pass_->draw(layers_, frame.camera, frame.part, look_of(frame));
     overlay_->draw(frame.camera, frame.part, frame.pixel_scale);
     sky_->draw_stars(frame.camera, frame.part);
-    if (!layers_.empty())
-        layer_pass_->draw(layers_, {.camera = frame.camera,
+    draw_layers(frame, target);
+    if (frame.labels) draw_labels(frame.camera, frame.part, frame.ground, frame.pixel_scale);
+}
+
+// In runs of meshes, and of lines and polygons.
+void GlobeLooks::draw_layers(const Frame& frame, const Framebuffer& target) {
+    const Texture* terrain_depth = nullptr;
+    for (auto first = layers_.begin(); first != layers_.end();) {
+        const bool meshes = (*first)->mesh.has_value();
+        const auto last =
+            std::find_if(first, layers_.end(), [&](const Layer* layer) { return layer->mesh.has_value() != meshes; });
+        const std::span<const Layer* const> run(first, last);
+        first = last;
+        if (!meshes) {
+            layer_pass_->draw(run, {.camera = frame.camera,
                                     .part = frame.part,
                                     .pixel_scale = frame.pixel_scale,
                                     .ground = frame.ground,
-                                    .target = target});
-    if (frame.labels) draw_labels(frame.camera, frame.part, frame.ground, frame.pixel_scale);
+                                    .target = target,
+                                    .terrain_depth = terrain_depth,
+                                    .mesh_lift_m = mesh_lift_m(frame.exaggeration)});
+            continue;
+        }
+        if (terrain_depth == nullptr && last != layers_.end()) terrain_depth = &keep_terrain_depth(target);
+        sky_->bind(frame.camera, frame.part);
+        mesh_pass_->draw(run, frame.camera, frame.part, look_of(frame));
+    }
+}
+
+const Texture& GlobeLooks::keep_terrain_depth(const Framebuffer& target) {
+    target.resolve_depth();
+    const Texture& depth = target.depth();
+    if (terrain_depth_.width() != depth.width() || terrain_depth_.height() != depth.height()) {
+        terrain_depth_ = Texture();  // before another takes memory
+        terrain_depth_ = Texture::make_2d(depth.internal_format(), depth.width(), depth.height());
+    }
+    gl().CopyImageSubData(depth.name(), GL_TEXTURE_2D, 0, 0, 0, 0, terrain_depth_.name(), GL_TEXTURE_2D, 0, 0, 0, 0,
+                          depth.width(), depth.height(), 1);
+    check_gl("GlobeLooks::keep_terrain_depth");
+    return terrain_depth_;
 }
 
 void GlobeLooks::draw_labels(const Camera& camera, const PicturePart& part, const DrapeGround& ground,

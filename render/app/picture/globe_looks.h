@@ -56,7 +56,7 @@ class GlobeLooks {
         DrapeGround& ground;     ///< what layers lie on
         double morph_reach = 0;  ///< see TerrainLook
         bool relief = false;     ///< heights as colours instead of the imagery
-        double pixel_scale = 1;  ///< of widths: below 1 where the picture is shown larger
+        double pixel_scale = 1;  ///< of widths: that of the options, times what is drawn of the pixels that are shown
         bool labels = true;
     };
     /// Draws the meshes of terrain() and overlay(), and layers, into what is bound: the target.
@@ -68,13 +68,15 @@ class GlobeLooks {
     void draw_opaque(const Frame& frame);
     void draw_blended(const Frame& frame, const Framebuffer& target);
     /// Names of layers, and of the graticule's lines, into what is bound.
-    void draw_labels(const Camera& camera, const PicturePart& part, const DrapeGround& ground, double pixel_scale = 1);
+    void draw_labels(const Camera& camera, const PicturePart& part, const DrapeGround& ground, double pixel_scale);
 
     TerrainPass& terrain() { return *terrain_; }
     OverlayPass& overlay() { return *overlay_; }
 
   private:
     TerrainLook look_of(const Frame& frame) const;
+    void draw_layers(const Frame& frame, const Framebuffer& target);
+    const Texture& keep_terrain_depth(const Framebuffer& target);
 
     Texture day_, night_, relief_;
     double texel_m_ = 0;
@@ -83,6 +85,7 @@ class GlobeLooks {
     std::optional<SkyPass> sky_;
     std::optional<OverlayPass> overlay_;
     std::vector<const Layer*> layers_;
+    Texture terrain_depth_;  ///< before meshes were drawn, if lines are drawn after them
     bool stencil_ = false, graticule_ = false;
     Layer graticule_names_;                   ///< of the view that was drawn last
     std::optional<LayerPass> layer_pass_;     // once there are layers

@@ -49,9 +49,12 @@ MeshTexture texture_of(planet::MeshLooks& looks, const std::string& file, std::s
     return {};
 }
 
-/// A material's factor for all vertices, where it is of use: where there is a picture, too.
-void multiply_colors(planet::MeshLooks& looks, std::size_t vertices) {
-    if (looks.picture.empty()) return;
+/// A material's factor for all vertices. White, and what a mesh has whose colour nobody knows, is none by itself: clay shows
+/// relief better.
+void multiply_colors(planet::MeshLooks& looks, bool with_picture, std::size_t vertices) {
+    const glm::vec3 factor(looks.base_color);
+    const bool no_color = factor == glm::vec3(1) || factor == glm::vec3(static_cast<float>(planet::unknown_color));
+    if (!with_picture && looks.colors.empty() && no_color) return;
     if (looks.colors.empty()) looks.colors.assign(vertices, glm::vec4(1));
     for (glm::vec4& color : looks.colors) color *= looks.base_color;
 }
@@ -64,8 +67,8 @@ LoadedLayer read_mesh_layer(const std::filesystem::path& file) {
     if (planet::mesh_format(file.native()) != planet::MeshFormat::glb)
         for (glm::vec4& color : looks.colors) color = glm::vec4(linear_from_srgb(glm::vec3(color)), color.a);
     LoadedLayer loaded{file.stem().native(), {}, mesh.triangles.size(), mesh.vertices.size()};
-    multiply_colors(looks, mesh.vertices.size());
     MeshTexture texture = texture_of(looks, file.native(), loaded.warning);
+    multiply_colors(looks, !texture.picture.pixels.empty(), mesh.vertices.size());
     loaded.layer.mesh.emplace(mesh, reference, looks.colors, planet::Geoid(data_file("egm96-15.pgm")), file.native(),
                               std::move(texture));
     return loaded;
@@ -112,12 +115,14 @@ LayerData LayerData::load(const RenderOptions& options, bool all_shipped) {
 
 std::vector<const Layer*> LayerData::shown(const RenderOptions& options) {
     std::vector<const Layer*> list;
-    if (options.shows(Overlay::borders)) list.push_back(&borders_.layer);
-    if (options.shows(Overlay::coastlines)) list.push_back(&coastlines_.layer);
     for (std::size_t i = 0; i < own_.size(); ++i) {
         own_[i].layer.style = style_of(options.layers[i]);
         if (options.layers[i].shown && options.layers[i].opacity > 0) list.push_back(&own_[i].layer);
     }
+    // A mesh below all else is the ground for shipped lines, too.
+    auto at = std::ranges::find_if(list, [](const Layer* layer) { return !layer->mesh; });
+    if (options.shows(Overlay::coastlines)) at = list.insert(at, &coastlines_.layer);
+    if (options.shows(Overlay::borders)) list.insert(at, &borders_.layer);
     return list;
 }
 

@@ -111,7 +111,8 @@ void add_layer_option(CLI::App& command, std::vector<LayerOptions>& layers) {
                 choose_colors(layers);
             },
             "Points, lines, polygons or a mesh on the ground: "
-            "FILE[,color=#ffcc00][,width=2][,opacity=0.8][,fill=0.2][,label=NAME]; many, later on top")
+            "FILE[,color=#ffcc00][,width=2][,opacity=0.8][,fill=0.2][,label=NAME]; many, later on top, "
+            "lines on meshes too; names over all")
         ->type_name("FILE[,...]")
         ->allow_extra_args(false);
 }

@@ -12,6 +12,8 @@ namespace {
 
 using Where = std::string_view;
 
+constexpr Range scale_range{0.5, 4};
+
 std::vector<std::string_view> names_of_overlays() {
     std::vector<std::string_view> names;
     for (const auto& each : overlay_names) names.push_back(each.name);
@@ -82,6 +84,8 @@ void add_drawing_options(CLI::App& command, RenderOptions& o) {
     add_value(command, "--show", "LIST",
               "Draw on top: coastlines,borders,graticule,relief,mesh,levels,curve,segments,deviations",
               [&](Where where, const std::string& text) { o.show = overlays_from_text(where, text); });
+    add_value(command, "--scale", "FACTOR", "Of lines, marks and letters, 0.5 to 4 [1; in a window its display's]",
+              [&](Where where, const std::string& text) { o.scale = parse_number(where, text, scale_range); });
     add_value(command, "--samples", "COUNT", "Samples a pixel: 1, 2, 4, 8 [4 near the ground, 1 from afar]",
               [&](Where where, const std::string& text) {
                   o.samples = 1 << parse_choice(where, text, {"1", "2", "4", "8"});

@@ -78,9 +78,11 @@ struct RenderOptions {
     std::size_t memory_bytes = std::size_t{1} << 30;  ///< of elevation tiles; what the picture needs is drawn anyway
     bool measure_frames = false;                      ///< what a next frame would cost, for the report
     std::uint32_t show = 0;                           ///< Overlay bits
-    int samples = 0;  ///< a pixel: 1, 2, 4 or 8, at most what the context has; 0: 4 where ridges can
-                      ///< stand against the sky, 1 from afar, where the air hides the edge
-    int threads = 0;  ///< 1..256; 0: as many as there are processors. Changes no byte
+    std::optional<double> scale{};  ///< of the widths of lines, marks and letters, 0.5..4; without: 1, in a window that
+                                    ///< of its display
+    int samples = 0;                ///< a pixel: 1, 2, 4 or 8, at most what the context has; 0: 4 where ridges can
+                                    ///< stand against the sky, 1 from afar, where the air hides the edge
+    int threads = 0;                ///< 1..256; 0: as many as there are processors. Changes no byte
     BackendChoice backend = BackendChoice::automatic;
 
     EarthSources earth{};
@@ -89,6 +91,8 @@ struct RenderOptions {
 
     std::vector<LayerOptions> layers{};  ///< over the terrain, later on top
 
+    int part_side =
+        2048;  ///< pixels, 96 or more: larger pictures are drawn in parts. No option says another: for tests
     std::optional<PictureCrop> crop{};  ///< only these pixels of the picture, just as they are in the whole
     std::filesystem::path output = "globe.png";
 
@@ -101,6 +105,8 @@ struct RenderOptions {
     }
     /// What of the picture is drawn.
     PictureCrop drawn() const { return crop.value_or(PictureCrop{0, 0, size.width, size.height}); }
+    bool has_layers() const { return !layers.empty() || shows(Overlay::coastlines) || shows(Overlay::borders); }
+    double drawn_scale() const { return scale.value_or(1); }
     bool shows(Overlay overlay) const { return (show & static_cast<std::uint32_t>(overlay)) != 0; }
 };
 

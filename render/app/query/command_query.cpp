@@ -26,6 +26,16 @@ void add_ground_options(CLI::App& command, GroundOptions& options) {
         ->excludes("--elevation");
 }
 
+void add_height_options(CLI::App& command, HeightOptions& options, const std::string& datum_use) {
+    add_value(command, "--datum", "DATUM", datum_use + ": egm96 or ellipsoid [egm96]",
+              [&datum = options.datum](std::string_view where, const std::string& text) {
+                  datum = parse_choice(where, text, {"egm96", "ellipsoid"}) == 0 ? planet::VerticalDatum::egm96
+                                                                                 : planet::VerticalDatum::ellipsoid;
+              });
+    add_ground_options(command, options.ground);
+    add_json_option(command, options.json);
+}
+
 planet::StoreField open_ground(const GroundOptions& options, Report& report) {
     const auto step = report.step("store");
     if (options.store)

@@ -23,6 +23,16 @@ struct GroundOptions {
 };
 void add_ground_options(CLI::App& command, GroundOptions& options);
 
+/// What queries for heights at places take.
+struct HeightOptions {
+    std::vector<planet::Geodetic> places;
+    planet::VerticalDatum datum = planet::VerticalDatum::egm96;  ///< that is asked for
+    GroundOptions ground;
+    std::string json;
+};
+/// --datum and the options of the ground; not the places. @param datum_use  what the datum is for
+void add_height_options(CLI::App& command, HeightOptions& options, const std::string& datum_use);
+
 /// Heights come from the store that pictures are drawn from, because only there is it known how far the surface can be
 /// from the samples it was made of. Times itself as a step of the report.
 planet::StoreField open_ground(const GroundOptions& options, Report& report);
@@ -40,6 +50,8 @@ class HeightReference {
         planet::OrthometricHeight H;
         planet::EllipsoidalHeight h;
         planet::GeoidUndulation N;
+
+        double above(planet::VerticalDatum datum) const { return datum == planet::VerticalDatum::egm96 ? H.m : h.m; }
     };
     Heights heights(const planet::Ground& ground, const glm::dvec3& normal) const;
 

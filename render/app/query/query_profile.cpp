@@ -20,33 +20,30 @@ using planet::degrees;
 using planet::Error;
 using planet::Fault;
 
-struct Options {
-    std::vector<planet::Geodetic> places;
+struct Options : HeightOptions {
     std::size_t samples = 500;
     std::filesystem::path output;
-    std::string json;
     bool curvature = false;
-    planet::VerticalDatum datum = planet::VerticalDatum::egm96;
-    GroundOptions ground;
 };
 
 struct Sample {
     planet::PathSample at;
     HeightReference::Heights heights;
+    planet::SurfaceOrigin origin;
     double slope = 0;  ///< rise over run along the path, of the heights above the datum asked for
 };
 
-std::vector<Sample> samples_of(const planet::StoreField& field, const planet::GeodesicPath& path,
-                               const Options& options) {
+std::vector<Sample> samples_of(const planet::StoreField& field, const SourceNames& names,
+                               const planet::GeodesicPath& path, const Options& options) {
     const HeightReference reference(field);
+    planet::SurfaceCursor cursor = field.cursor();
     std::vector<Sample> samples;
     for (const planet::PathSample& s : planet::sample_path(field, path, options.samples)) {
         const glm::dvec3 n = planet::normal_from_geodetic(s.place.latitude, s.place.longitude);
-        samples.push_back({s, reference.heights(s.ground, n), 0});
+        cursor.seek(n);
+        samples.push_back({s, reference.heights(s.ground, n), names.known(cursor.origin(n), s.ground.bound > 0), 0});
     }
-    const auto height = [&](std::size_t i) {
-        return options.datum == planet::VerticalDatum::egm96 ? samples[i].heights.H.m : samples[i].heights.h.m;
-    };
+    const auto height = [&](std::size_t i) { return samples[i].heights.above(options.datum); };
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < samples.size() ? i + 1 : i;
         const double run = samples[after].at.distance - samples[before].at.distance;
@@ -55,16 +52,33 @@ std::vector<Sample> samples_of(const planet::StoreField& field, const planet::Ge
     return samples;
 }
 
-std::string table_of(const std::vector<Sample>& samples) {
+std::string table_of(const std::vector<Sample>& samples, const SourceNames& names) {
     std::string text =
-        "distance_m,latitude_deg,longitude_deg,height_m,ellipsoidal_height_m,slope_percent,height_bound_m\n";
+        "distance_m,latitude_deg,longitude_deg,height_m,ellipsoidal_height_m,slope_percent,height_bound_m,";
+    text.append(SourceNames::csv_columns).append("\n");
     for (const Sample& s : samples) {
         text += fixed(s.at.distance, 3) + "," + fixed(s.at.place.latitude / degrees, 9) + "," +
                 fixed(s.at.place.longitude / degrees, 9) + "," + fixed(s.heights.H.m, 3) + "," +
                 fixed(s.heights.h.m, 3) + "," + fixed(100 * s.slope, 3) + "," +
-                (s.at.ground.bound > 0 ? fixed(s.at.ground.bound, 3) : "") + "\n";
+                (s.at.ground.bound > 0 ? fixed(s.at.ground.bound, 3) : "") + "," + names.csv(s.origin) + "\n";
     }
     return text;
+}
+
+/// From where to where along the path heights are from the same files: to half the distance between samples.
+nlohmann::ordered_json stretches_json(const std::vector<Sample>& samples, const SourceNames& names) {
+    auto list = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double end = samples[i].at.distance;
+        if (i == 0 || !(samples[i].origin == samples[i - 1].origin)) {
+            const double begin = i == 0 ? 0 : 0.5 * (samples[i - 1].at.distance + end);
+            if (i > 0) list.back()["to_m"] = begin;
+            list.push_back({{"from_m", begin}});
+            names.set(list.back(), samples[i].origin);
+        }
+        list.back()["to_m"] = end;
+    }
+    return list;
 }
 
 std::string figure_of(const std::vector<Sample>& samples, const planet::GeodesicPath& path, const Options& options,
@@ -72,7 +86,7 @@ std::string figure_of(const std::vector<Sample>& samples, const planet::Geodesic
     ProfileChart chart;
     for (const Sample& s : samples) {
         chart.distance.push_back(s.at.distance);
-        chart.height.push_back(options.datum == planet::VerticalDatum::egm96 ? s.heights.H.m : s.heights.h.m);
+        chart.height.push_back(s.heights.above(options.datum));
     }
     for (std::size_t leg = 1; leg < path.legs(); ++leg) chart.corners.push_back(path.leg_start(leg));
     const auto text = [](const planet::Geodetic& place) {
@@ -117,13 +131,17 @@ void profile(const Options& options) {
         Progress progress;
         totals = planet::measure_path(field, path, [&](double share) { progress.update("measuring", share); });
     }
-    if (output) {
+    const SourceNames names(field.sources());
+    {
         const auto step = report.step("sample");
-        const std::vector<Sample> samples = samples_of(field, path, options);
-        output->commit(options.output.extension() == ".csv" ? table_of(samples)
-                                                            : figure_of(samples, path, options, totals.bound));
-        report.set("output", options.output.native());
-        report.set("samples", samples.size());
+        const std::vector<Sample> samples = samples_of(field, names, path, options);
+        report.set("stretches", stretches_json(samples, names));
+        if (output) {
+            output->commit(options.output.extension() == ".csv" ? table_of(samples, names)
+                                                                : figure_of(samples, path, options, totals.bound));
+            report.set("output", options.output.native());
+            report.set("samples", samples.size());
+        }
     }
     report_damage(field, report);
     std::cout << fixed(path.length(), 2) << " m along the ellipsoid, " << fixed(totals.length, 2)
@@ -154,15 +172,8 @@ void add_query_profile(CLI::App& query) {
                   if (options->output.extension() != ".svg" && options->output.extension() != ".csv")
                       throw Error(Fault::bad_usage, where, shown(text) + " has no ending of a profile", ".svg, .csv");
               });
-    add_value(*command, "--datum", "DATUM", "Of the figure and the slopes: egm96 or ellipsoid [egm96]",
-              [options](std::string_view where, const std::string& text) {
-                  options->datum = parse_choice(where, text, {"egm96", "ellipsoid"}) == 0
-                                       ? planet::VerticalDatum::egm96
-                                       : planet::VerticalDatum::ellipsoid;
-              });
     command->add_flag("--curvature", options->curvature, "Draw the figure with the planet's curvature");
-    add_ground_options(*command, options->ground);
-    add_json_option(*command, options->json);
+    add_height_options(*command, *options, "Of the figure and the slopes");
     command->final_callback([options] { profile(*options); });
 }
 

@@ -18,6 +18,9 @@ using planet::wgs84;
 /// A table takes a tenth of a second of processor time, and in less the air about a moving eye changes little.
 constexpr double least_air_interval_s = 0.2;
 
+/// A longer step than that is a beginning: nothing is known of a motion.
+constexpr double longest_step_s = 1;
+
 /// Taken in while the eye moves, at 0.05 ms each a tenth of the frame's time, but enough for frames that take none.
 std::size_t tiles_for(double frame_seconds) {
     return static_cast<std::size_t>(std::clamp(frame_seconds * 2000, 64.0, 4096.0));
@@ -62,8 +65,14 @@ planet::SegmentView LiveMesh::view_of(const Wanted& wanted) const {
 bool LiveMesh::step(const Wanted& wanted, bool wait) {
     const auto start = std::chrono::steady_clock::now();
     const auto threads = static_cast<int>(options_.thread_count());
+    const bool prepared = mesh_ahead_.finish();
     const bool was_at_rest = std::exchange(at_rest_, wanted.at_rest);
-    view_ = view_of(wanted);
+    view_before_ = std::exchange(view_, view_of(wanted));
+    frame_seconds_ = std::chrono::duration<double>(start - std::exchange(updated_, start)).count();
+    goes_on_ = !wanted.at_rest && !was_at_rest && frame_seconds_ < longest_step_s;
+    velocity_m_s_ = wanted.velocity_m_s;
+    if (goes_on_ && velocity_m_s_ == glm::dvec3(0))
+        velocity_m_s_ = (view_.test.eye - view_before_.test.eye) / frame_seconds_;
     coarsening_ = wanted.at_rest ? 1 : 1 / steps_.factor();
     const bool eye_moved = std::exchange(seen_, view_.culling) != view_.culling || was_at_rest != at_rest_;
     if (eye_moved || !options_.max_triangles) fitted_.reset();
@@ -72,14 +81,12 @@ bool LiveMesh::step(const Wanted& wanted, bool wait) {
         view_.test.K = fitted_->K;
         coarsening_ = fitted_->coarsening;
     }
-    const planet::SegmentView ahead = planet::view_ahead(view_, wanted.velocity_m_s, 0.5);
-    const bool moves = wanted.velocity_m_s != glm::dvec3(0);
     if (wait) segments_.invalidate(tiles_.settle(view_));
-    const double since_last = std::chrono::duration<double>(start - std::exchange(updated_, start)).count();
-    const auto changes = moves ? tiles_.update(view_, &ahead, tiles_for(since_last)) : tiles_.update(view_);
+    const auto ahead = view_ahead(view_);
+    const auto changes = tiles_.update(view_, ahead ? &*ahead : nullptr, prepared ? 0 : most_tiles());
     segments_.invalidate(changes);
     segments_.update(tiles_, view_, threads);
-    bool changed = segments_.built() > 0 || !changes.empty() || eye_moved;
+    bool changed = segments_.built() > 0 || !changes.empty() || prepared || eye_moved;
     if (wanted.at_rest) {
         // As many patches as a picture has: coarser ones where there would be too many.
         while (tiles_.residency().pending == 0 && detailed_patches(segments_) > patch_limit &&
@@ -93,8 +100,34 @@ bool LiveMesh::step(const Wanted& wanted, bool wait) {
         steps_.after_frame(segments_.leaf_count(), wanted.max_triangles);
         if (angle_factor_ > 1 && detailed_patches(segments_) < patch_limit / 4) angle_factor_ = 1;
     }
+    residency_ = tiles_.residency();
+    counts_ = tiles_.counts();
     update_seconds_ = seconds_since(start);
     return changed;
+}
+
+std::optional<planet::SegmentView> LiveMesh::view_ahead(const planet::SegmentView& view) const {
+    constexpr double seconds = 0.5;
+    if (velocity_m_s_ == glm::dvec3(0)) return std::nullopt;
+    return planet::view_ahead(view, velocity_m_s_, seconds);
+}
+
+std::size_t LiveMesh::most_tiles() const {
+    return velocity_m_s_ == glm::dvec3(0) ? planet::ResidentTiles::unlimited : tiles_for(frame_seconds_);
+}
+
+void LiveMesh::make_next() {
+    if (!goes_on_ || (velocity_m_s_ == glm::dvec3(0) && view_.culling == view_before_.culling)) return;
+    begin_next(planet::view_after(view_before_, view_));
+}
+
+void LiveMesh::make_next(const Camera& camera) {
+    // How fine a budget allows it to be is known only once all of its tiles are there.
+    if (!options_.max_triangles) begin_next(view_of({.camera = camera, .at_rest = true}));
+}
+
+void LiveMesh::begin_next(const planet::SegmentView& next) {
+    mesh_ahead_.begin(next, view_ahead(next), most_tiles(), static_cast<int>(threads_beside(options_)));
 }
 
 bool LiveMesh::update_patches(bool mesh_changed, std::size_t most) {
@@ -112,22 +145,23 @@ void LiveMesh::settle(Wanted wanted) {
 }
 
 bool LiveMesh::complete() const {
-    return at_rest_ && tiles_.residency().pending == 0 && patches_.missing() == 0;
+    return at_rest_ && residency_.pending == 0 && patches_.missing() == 0;
 }
 
 void LiveMesh::place_anew() {
+    mesh_ahead_.finish();
     segments_.invalidate(tiles_.place({surface_.store->metadata().ellipsoid, surface_.exaggeration}));
 }
 
 double LiveMesh::pixel_deviation() const {
-    const planet::Residency& r = tiles_.residency();
+    const planet::Residency& r = residency_;
     // Where nothing is missing, the split test itself is the bound: what segments know is for an eye that has moved since.
     const double most = r.pending == 0 && r.damaged == 0 ? 1 : std::numeric_limits<double>::infinity();
     return std::min(std::max(segments_.ratio_max(), r.hidden_ratio), most) * coarsening_ * options_.max_pixel_deviation;
 }
 
 double LiveMesh::deviation_m() const {
-    return std::max(segments_.deviation_max_m(), tiles_.residency().hidden_deviation_m);
+    return std::max(segments_.deviation_max_m(), residency_.hidden_deviation_m);
 }
 
 std::optional<ViewTable> LiveAir::update(const glm::dvec3& eye, planet::UtcTime time, bool moving) {

@@ -8,6 +8,7 @@
 
 #include "planet/mesh/budget.h"
 #include "planet/mesh/segments.h"
+#include "planet/streaming/mesh_ahead.h"
 #include "planet/streaming/resident_tiles.h"
 #include "render/app/picture/drawn_surface.h"
 #include "render/sky/atmosphere.h"
@@ -22,13 +23,18 @@ class LiveMesh {
 
     struct Wanted {
         const Camera& camera;                      ///< of the whole view, in full size
-        glm::dvec3 velocity_m_s{0};                ///< of the eye, ecef
+        glm::dvec3 velocity_m_s{0};                ///< of the eye, ecef; 0: as it went since the last update
         bool at_rest = false;                      ///< as fine as a picture, whatever it takes
         std::size_t max_triangles = 1'000'000;     ///< while it moves
         std::optional<planet::Culling> culling{};  ///< instead of the camera's: to look at it from outside
     };
     /// One step. Returns whether the mesh has changed.
     bool update(const Wanted& wanted) { return step(wanted, false); }
+    /// While the mesh of the last update is drawn, another thread makes that of the next, if the motion goes on as it is.
+    /// What can be asked stays as it is but for tiles(), which are not to be looked at until the next update.
+    void make_next();
+    /// The same for a view that is known, to be settled.
+    void make_next(const Camera& camera);
     /// After update(): whether patches came, or the mesh has changed. Takes time for at most `most` patches.
     bool update_patches(bool mesh_changed, std::size_t most);
 
@@ -48,20 +54,29 @@ class LiveMesh {
     double morph_reach() const { return view_.morph ? view_.test.K : 0; }
     double pixel_deviation() const;
     double deviation_m() const;
-    const planet::Residency& residency() const { return tiles_.residency(); }
-    planet::ResidentCounts counts() const { return tiles_.counts(); }
+    const planet::Residency& residency() const { return residency_; }
+    const planet::ResidentCounts& counts() const { return counts_; }
     double update_seconds() const { return update_seconds_; }
     bool exhausted() const { return steps_.step() > 0; }
 
   private:
     bool step(const Wanted& wanted, bool wait);
+    void begin_next(const planet::SegmentView& next);
+    std::optional<planet::SegmentView> view_ahead(const planet::SegmentView& view) const;
+    std::size_t most_tiles() const;
     planet::SegmentView view_of(const Wanted& wanted) const;
 
     const RenderOptions& options_;
     const DrawnSurface& surface_;
     planet::ResidentTiles tiles_;
     planet::Segments segments_;
-    planet::SegmentView view_;
+    planet::MeshAhead mesh_ahead_{tiles_, segments_};
+    planet::SegmentView view_, view_before_;  ///< of the last two updates
+    bool goes_on_ = false;                    ///< a motion, which began before the last update
+    glm::dvec3 velocity_m_s_{0};
+    double frame_seconds_ = 0;
+    planet::Residency residency_;
+    planet::ResidentCounts counts_;
     planet::BudgetSteps steps_;
     PatchCache patches_;
     std::optional<planet::Culling> seen_;           ///< of the last update

@@ -48,7 +48,7 @@ double ViewFrame::draw_moving(GlobeLooks& looks, const GlobeLooks::Frame& frame,
                 .ground = frame.ground,
                 .morph_reach = frame.morph_reach,
                 .relief = frame.relief,
-                .pixel_scale = moving_scale_,
+                .pixel_scale = moving_scale_ * frame.pixel_scale,
                 .labels = false},
                moving_);
     gl().Finish();

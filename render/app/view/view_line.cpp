@@ -91,6 +91,7 @@ std::string render_line(const RenderOptions& o) {
     if (o.max_pixel_deviation != usual.max_pixel_deviation) add("--max-pixel-deviation", exact(o.max_pixel_deviation));
     if (o.max_triangles) add("--max-triangles", std::to_string(*o.max_triangles));
     if (o.show != 0) add("--show", shown_overlays(o));
+    if (o.drawn_scale() != 1) add("--scale", exact(*o.scale));
     if (o.samples != 0) add("--samples", std::to_string(o.samples));
     if (o.store) add("--store", o.store->native());
     for (const auto& [name, files] :

@@ -118,6 +118,7 @@ void ViewerSession::begin() {
     mesh_.emplace(render_, *data_.surface, std::min<std::size_t>(2048, static_cast<std::size_t>(limits.array_layers)));
     pace_.emplace(is_software(stage_.context.gl_renderer()), render_.max_triangles.value_or(~std::size_t{0}));
     render_.size = {window_.width(), window_.height()};
+    if (!render_.scale) render_.scale = std::clamp(std::round(100 * window_.scale()) / 100, 0.5, 4.0);
     const DrawnSurface& surface = *data_.surface;
     navigator_.emplace(
         Ground{[this](const glm::dvec3& origin, const glm::dvec3& way) { return point_under(origin, way); },
@@ -136,6 +137,17 @@ void ViewerSession::begin() {
     report_.gl_version = stage_.context.gl_version();
     report_.gl_renderer = stage_.context.gl_renderer();
     report_.context = window_.context_way();
+    warn();
+}
+
+/// Of layers, in the window and on standard error.
+void ViewerSession::warn() {
+    std::string lines;
+    for (const LayerReport& layer : data_.layers.report())
+        if (!layer.warning.empty()) lines += (lines.empty() ? "" : "\n") + layer.warning;
+    if (lines.empty()) return;
+    warn_of_layers(data_.layers.report());
+    notice(lines);
 }
 
 Lens ViewerSession::lens() const {
@@ -169,7 +181,7 @@ std::optional<glm::dvec3> ViewerSession::mesh_at(const glm::dvec2& pixel) const 
 /// How long there is nothing to do but to wait for the user. Other threads need the processor, too.
 double ViewerSession::patience() const {
     if (!resting_ || worked_ || counts_frames() || save_next_) return 0;
-    const bool waits = !frame_.settled() || panels_.wants_frame || automatic() || window_.seconds() - noticed_at_ < 4;
+    const bool waits = !frame_.settled() || panels_.wants_frame || automatic() || window_.seconds() < notice_ends_;
     return waits ? 0.016 : 0.5;
 }
 
@@ -253,6 +265,7 @@ void ViewerSession::update_globe() {
         looks_.overlay().upload(mesh_->segments(), mesh_->tiles());
         mesh_changed_ = true;
     }
+    mesh_->make_next();
     if (auto table = air_.update(camera.eye, render_.time, !resting_)) {
         looks_.set_sky(air_.tables(), *std::move(table), render_.time);
         air_changed_ = true;
@@ -265,14 +278,15 @@ void ViewerSession::draw() {
     const bool changed = mesh_changed_ || air_changed_ || look_changed_;
     const Camera camera = shown_camera();
     const PicturePart whole{0, 0, camera.width, camera.height};
-    DrapeGround ground = data_.surface->for_layers(mesh_->segments(), camera, whole);
+    DrapeGround ground = data_.surface->for_layers(mesh_->segments(), camera, whole, render_.drawn_scale());
     const GlobeLooks::Frame frame{.camera = camera,
                                   .part = whole,
                                   .exaggeration = render_.exaggeration,
                                   .patches = mesh_->patches().texture(),
                                   .ground = ground,
                                   .morph_reach = mesh_->morph_reach(),
-                                  .relief = render_.shows(Overlay::relief)};
+                                  .relief = render_.shows(Overlay::relief),
+                                  .pixel_scale = render_.drawn_scale()};
     const bool complete = resting_ && mesh_->complete() && air_.is_for(camera.eye, render_.time);
     picture_new_ = false;
     worked_ = true;
@@ -302,12 +316,13 @@ void ViewerSession::draw() {
 void ViewerSession::draw_labels() {
     const Camera camera = shown_camera();
     const PicturePart whole{0, 0, camera.width, camera.height};
-    looks_.draw_labels(camera, whole, data_.surface->for_layers(mesh_->segments(), camera, whole));
+    const double scale = render_.drawn_scale();
+    looks_.draw_labels(camera, whole, data_.surface->for_layers(mesh_->segments(), camera, whole, scale), scale);
 }
 
 void ViewerSession::present() {
     if (!picture_new_ && !input_ && !panels_.wants_frame && !counts_frames() && !save_next_ &&
-        window_.seconds() - noticed_at_ > 4 && window_.seconds() - last_swap_ < 0.5)
+        window_.seconds() > notice_ends_ && window_.seconds() - last_swap_ < 0.5)
         return;
     gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl().Viewport(0, 0, window_.width(), window_.height());

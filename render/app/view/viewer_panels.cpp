@@ -15,7 +15,8 @@ namespace {
 using planet::degrees;
 using planet::wgs84;
 
-constexpr double notice_s = 4;
+/// As long as it takes to read.
+constexpr double least_notice_s = 4, letter_s = 0.06;
 
 Plot plot(const std::string& name, const std::deque<double>& values, float marked) {
     Plot p{.name = name, .unit = "ms", .values{values.begin(), values.end()}, .marked = marked};
@@ -55,14 +56,14 @@ std::string text_of_fact(const char* name, const std::string& value) {
 }  // namespace
 
 void ViewerSession::notice(std::string text) {
+    notice_ends_ = window_.seconds() + std::max(least_notice_s, letter_s * static_cast<double>(text.size()));
     panels_.notice = std::move(text);
-    noticed_at_ = window_.seconds();
 }
 
 void ViewerSession::fill_panels() {
-    const double age = window_.seconds() - noticed_at_;
-    if (age > notice_s) panels_.notice.clear();
-    panels_.notice_fade = static_cast<float>(std::clamp(2 * (notice_s - age), 0.0, 1.0));
+    const double left = notice_ends_ - window_.seconds();
+    if (left < 0) panels_.notice.clear();
+    panels_.notice_fade = static_cast<float>(std::clamp(2 * left, 0.0, 1.0));
     if (!panels_.shown) return;
     fill_status();
     if (panels_.statistics) fill_statistics();

@@ -38,6 +38,7 @@ class ViewerSession {
     // viewer.cpp
     bool load();
     void begin();
+    void warn();
     bool step();
     Steering steering() const;
     void step_view(double dt);
@@ -107,7 +108,7 @@ class ViewerSession {
     glm::dvec2 cursor_{-1};
     PlaceFormat place_format_ = PlaceFormat::degrees;
     std::vector<Sight> places_;  ///< to go back to
-    double noticed_at_ = -1e9;
+    double notice_ends_ = -1e9;  ///< seconds on the window's clock
     bool leaving_ = false, input_ = true;
     bool worked_ = true;  ///< the last turn of the loop drew something
     bool save_next_ = false, saved_ = false;

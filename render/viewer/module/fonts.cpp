@@ -15,12 +15,13 @@ Fonts load_fonts(float scale) {
     Fonts fonts;
     if (!file.empty()) {
         fonts.text = atlas.AddFontFromFileTTF(file.c_str(), 14 * scale, nullptr, ranges);
+        fonts.small = atlas.AddFontFromFileTTF(file.c_str(), 12 * scale, nullptr, ranges);
         fonts.title = atlas.AddFontFromFileTTF(file.c_str(), 17 * scale, nullptr, ranges);
     }
-    if (fonts.text == nullptr || fonts.title == nullptr) {
+    if (fonts.text == nullptr || fonts.small == nullptr || fonts.title == nullptr) {
         ImFontConfig config;
         config.SizePixels = 13 * scale;
-        fonts.text = fonts.title = atlas.AddFontDefault(&config);
+        fonts.text = fonts.small = fonts.title = atlas.AddFontDefault(&config);
     }
     return fonts;
 }

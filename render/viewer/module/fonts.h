@@ -6,7 +6,7 @@ struct ImFont;
 namespace render {
 
 struct Fonts {
-    ImFont *text = nullptr, *title = nullptr;
+    ImFont *text = nullptr, *small = nullptr, *title = nullptr;  ///< 14, 12 and 17 units high
 };
 
 /// OCTAGLOBE_FONT names another TrueType file; one that is none plays a machine without fonts.

@@ -16,10 +16,10 @@
 namespace render {
 namespace {
 
-// One dark glass, two greys, one accent. All distances are multiples of 8.
+// One dark glass, through which no name can be read, two greys, one accent. All distances are multiples of 8.
 constexpr ImU32 ink = IM_COL32(236, 240, 244, 255), quiet = IM_COL32(160, 170, 181, 255),
-                accent = IM_COL32(255, 196, 84, 255), glass = IM_COL32(13, 17, 22, 214),
-                thin_glass = IM_COL32(13, 17, 22, 150), shade = IM_COL32(0, 0, 0, 190),
+                accent = IM_COL32(255, 196, 84, 255), glass = IM_COL32(13, 17, 22, 250),
+                thin_glass = IM_COL32(13, 17, 22, 184), shade = IM_COL32(0, 0, 0, 210),
                 line = IM_COL32(255, 255, 255, 26);
 
 ImVec4 color(ImU32 c) {
@@ -60,7 +60,7 @@ void set_style(float scale) {
 /// Text that can be read over any ground.
 void shaded_text(ImDrawList& list, ImVec2 at, ImU32 ink_color, const char* text, const char* end = nullptr) {
     for (const ImVec2 off : {ImVec2(1, 1), ImVec2(-1, 1), ImVec2(1, -1), ImVec2(-1, -1)})
-        list.AddText({at.x + off.x, at.y + off.y}, IM_COL32(0, 0, 0, 150), text, end);
+        list.AddText({at.x + off.x, at.y + off.y}, shade, text, end);
     list.AddText(at, ink_color, text, end);
 }
 
@@ -68,22 +68,6 @@ void accent_text_wrapped(const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, color(accent));
     ImGui::TextWrapped("%s", text.c_str());
     ImGui::PopStyleColor();
-}
-
-/// How many groups go into the first of two columns, so that they are as even as they come.
-std::size_t even_split(std::span<const HelpGroup> groups) {
-    const auto rows = [](std::span<const HelpGroup> some) {
-        std::size_t sum = 0;
-        for (const HelpGroup& group : some) sum += group.lines.size() + 2;
-        return sum;
-    };
-    const auto taller = [&](std::size_t split) {
-        return std::max(rows(groups.first(split)), rows(groups.subspan(split)));
-    };
-    std::size_t best = 0;
-    for (std::size_t split = 1; split <= groups.size(); ++split)
-        if (taller(split) < taller(best)) best = split;
-    return best;
 }
 
 }  // namespace
@@ -97,6 +81,7 @@ PanelDrawing::PanelDrawing(GLFWwindow* window, double scale) : scale_(static_cas
     set_style(scale_);
     const Fonts fonts = load_fonts(scale_);
     text_ = fonts.text;
+    small_ = fonts.small;
     title_ = fonts.title;
     ImGui_ImplGlfw_InitForOpenGL(window, true);
     if (!ImGui_ImplOpenGL3_Init("#version 450 core"))
@@ -125,9 +110,12 @@ void PanelDrawing::draw(Panels& panels) {
     panels.wants_frame = false;
     if (panels.shown) {
         if (panels.progress.empty()) draw_overlay(panels);
-        if (panels.settings) draw_settings(panels);
-        if (panels.statistics) draw_statistics(panels);
-        if (panels.help) draw_help(panels);
+        if (panels.help) {
+            draw_help(panels);  // instead of the others, which it would lie over in a small window
+        } else {
+            if (panels.settings) draw_settings(panels);
+            if (panels.statistics) draw_statistics(panels);
+        }
         if (panels.go_to) draw_go_to(panels);
         draw_notice(panels);
     }
@@ -174,7 +162,7 @@ void PanelDrawing::draw_scale_bar(const Panels& panels) {
                 y = std::round(size.y - unit(48));
     const float tick = unit(6);
     const ImVec2 points[] = {{x0, y - tick}, {x0, y}, {x1, y}, {x1, y - tick}};
-    list.AddPolyline(points, 4, IM_COL32(0, 0, 0, 150), 0, unit(4));
+    list.AddPolyline(points, 4, shade, 0, unit(4));
     list.AddPolyline(points, 4, ink, 0, unit(1.5f));
     const float width = ImGui::CalcTextSize(panels.scale_text.c_str()).x;
     shaded_text(list, {std::round(0.5f * (x0 + x1 - width)), y - tick - ImGui::GetFontSize()}, ink,
@@ -227,11 +215,14 @@ void PanelDrawing::draw_notice(const Panels& panels) {
     if (!panels.progress.empty()) box(panels.progress, 0.5f * size.y - unit(24), 1, panels.progress_part);
 }
 
+/// For a panel below some room above it: above the line of status, with as much room below as there is at the sides.
+float PanelDrawing::panel_room(float above) const {
+    return ImGui::GetIO().DisplaySize.y - unit(32 + 16) - above;
+}
+
 bool PanelDrawing::begin_panel(const char* title, float x, float y, float pivot_x, float pivot_y, float width) {
     ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, {pivot_x, pivot_y});
-    // Above the line of status, with as much room below as there is at the sides.
-    const float room = ImGui::GetIO().DisplaySize.y - unit(32 + 16) - (pivot_y > 0 ? unit(16) : y);
-    ImGui::SetNextWindowSizeConstraints({width, 0}, {width > 0 ? width : 1e6f, room});
+    ImGui::SetNextWindowSizeConstraints({width, 0}, {width > 0 ? width : 1e6f, panel_room(pivot_y > 0 ? unit(16) : y)});
     constexpr ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                                        ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
                                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse |
@@ -248,31 +239,37 @@ void PanelDrawing::end_panel() {
 }
 
 void PanelDrawing::draw_help(Panels& panels) {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const ImVec2 size = ImGui::GetIO().DisplaySize, padding = ImGui::GetStyle().WindowPadding;
+    ImFont* const fonts[] = {text_, small_};
+    const HelpLayout layout = lay_out_help(
+        panels.help_groups,
+        [&](const std::string& text, float font) {
+            return text_->CalcTextSizeA(unit(font), 1e6f, 0, text.c_str()).x / scale_;
+        },
+        (size.x - 2 * padding.x) / scale_, (panel_room(unit(16)) - 2 * padding.y) / scale_ - 24);
+    const HelpDensity& density = help_densities[layout.density];
     begin_panel("Keys", 0.5f * size.x, 0.5f * (size.y - unit(32)), 0.5f, 0.5f, 0);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(unit(8), unit(4)));
-    const auto groups = std::span<const HelpGroup>(panels.help_groups);
-    const std::size_t split = even_split(groups);
-    help_column(groups.first(split));
-    ImGui::SameLine(0, unit(32));
-    help_column(groups.subspan(split));
+    ImGui::PushFont(fonts[layout.density]);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, unit(density.row_gap)));
+    for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+        if (i > 0) ImGui::SameLine(0, unit(density.column_gap));
+        help_column(layout.columns[i], density);
+    }
     ImGui::PopStyleVar();
+    ImGui::PopFont();
     end_panel();
 }
 
-void PanelDrawing::help_column(std::span<const HelpGroup> groups) {
-    float keys = 0;
-    for (const HelpGroup& group : groups)
-        for (const HelpLine& help : group.lines) keys = std::max(keys, ImGui::CalcTextSize(help.keys.c_str()).x);
+void PanelDrawing::help_column(const HelpLayout::Column& column, const HelpDensity& density) {
     ImGui::BeginGroup();
     const float left = ImGui::GetCursorPosX();
-    for (const HelpGroup& group : groups) {
-        ImGui::Dummy({0, unit(4)});
+    for (const HelpGroup& group : column.groups) {
+        ImGui::Dummy({0, unit(density.group_gap - density.row_gap)});
         ImGui::TextColored(color(accent), "%s", group.title.c_str());
         for (const HelpLine& help : group.lines) {
             ImGui::TextUnformatted(help.keys.c_str());
             ImGui::SameLine(0, 0);
-            ImGui::SetCursorPosX(left + keys + unit(16));
+            ImGui::SetCursorPosX(left + unit(column.keys + density.key_gap));
             ImGui::TextDisabled("%s", help.what.c_str());
         }
     }

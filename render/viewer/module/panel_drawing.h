@@ -2,9 +2,8 @@
 // Panels drawn by Dear ImGui.
 
 #include <memory>
-#include <span>
 
-#include "render/viewer/panels.h"
+#include "render/viewer/help_layout.h"
 
 struct GLFWwindow;
 struct ImDrawList;
@@ -33,17 +32,18 @@ class PanelDrawing {
     void draw_compass(Panels& panels);
     void draw_notice(const Panels& panels);
     void draw_help(Panels& panels);
-    void help_column(std::span<const HelpGroup> groups);
+    void help_column(const HelpLayout::Column& column, const HelpDensity& density);
     void draw_settings(Panels& panels);
     void draw_layer_rows(std::vector<LayerRow>& rows);
     void draw_statistics(Panels& panels);
     void draw_go_to(Panels& panels);
     bool begin_panel(const char* title, float x, float y, float pivot_x, float pivot_y, float width);
+    float panel_room(float above) const;
     void end_panel();
     float unit(float u) const { return u * scale_; }
 
     float scale_;
-    ImFont *text_ = nullptr, *title_ = nullptr;
+    ImFont *text_ = nullptr, *small_ = nullptr, *title_ = nullptr;
 };
 
 }  // namespace render

@@ -47,7 +47,7 @@ inline std::string rows_of(const std::filesystem::path& file) {
             for (int i = 0; i < columns; ++i) rows += row.text(i) + (i + 1 < columns ? "|" : "\n");
     };
     add("SELECT key, value FROM metadata ORDER BY key", 2);
-    add("SELECT rank, name, checksum, crs, datum, hex(spacing_m) FROM sources ORDER BY rank", 6);
+    add("SELECT rank, name, checksum, crs, datum, hex(spacing_m), files FROM sources ORDER BY rank", 7);
     add("SELECT code, hex(data) FROM tiles ORDER BY code", 2);
     planet::Sha256 sum;
     sum.add(rows.data(), rows.size());

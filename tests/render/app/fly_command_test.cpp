@@ -6,8 +6,12 @@
 #include <fstream>
 #include <thread>
 
+#include "planet/elevation/image_io.h"
+#include "render/app/fly/film.h"
 #include "render/app/output_folder.h"
+#include "render/app/picture/picture.h"
 #include "tests/render/app/can_draw.h"
+#include "tests/render/app/picture_difference.h"
 #include "tests/render/app/program_process.h"
 
 namespace render {
@@ -89,6 +93,38 @@ TEST_F(Fly, FramesAreThoseOfRenderAndDependOnNothingElse) {
     expect_picture("--at 20,-100 --range 9000km", 0);
     expect_picture("--at 37.58,-105.49 --range 30km --heading 30 --pitch -20", 10);
     expect_picture("--at 37.58,-105.49 --range 30km --heading 40 --pitch -20", 13);
+}
+
+// Frames larger than what is drawn at once, which here is little: four parts, with what crosses their borders.
+TEST_F(Fly, ALargeFrameHasThePartsOfThePicture) {
+    write(folder_ / "line.geojson", R"({"type": "LineString", "coordinates": [[-105.6, 37.5], [-105.4, 37.65]]})");
+    FilmOptions film{.render = {.size = {160, 130}, .show = static_cast<std::uint32_t>(Overlay::graticule)}, .fps = 5};
+    film.render.part_side = 112;
+    film.render.layers = {parse_layer("layer", (folder_ / "line.geojson").string() + ",width=9")};
+    film.frames = {9, 10};
+    RenderOptions picture = film.render;
+    const FlightPlan plan = read_flight_plan(folder_ / "path.json", {}, {});
+    const auto frames = make_frame_output(folder_ / "large", film.render.size, film.fps, {false, ""});
+    const FilmReport report = draw_film(film, plan, *frames);
+    frames->finish();
+
+    picture.at = plan.keys[1].at;
+    picture.range = plan.keys[1].range;
+    picture.heading = plan.keys[1].heading;
+    picture.pitch = plan.keys[1].pitch;
+    picture.time = *plan.keys[0].time;
+    picture.output = folder_ / "one.png";
+    const PictureReport drawn = draw_picture(picture);
+    EXPECT_EQ(content(folder_ / "one.png"), frame("large", 10));
+    EXPECT_GE(report.triangles_max, drawn.triangles);
+    EXPECT_GT(report.tiles.tiles, 0u);
+    // The parts are what is drawn at once, but for where layers meet their borders.
+    picture.part_side = 2048;
+    picture.output = folder_ / "whole.png";
+    EXPECT_GT(drawn.triangles, draw_picture(picture).triangles);
+    const PictureDifference d =
+        compare(planet::read_image(folder_ / "one.png"), planet::read_image(folder_ / "whole.png"), 3);
+    EXPECT_LT(d.share(), 0.002) << d.worst;
 }
 
 TEST_F(Fly, FollowsALine) {

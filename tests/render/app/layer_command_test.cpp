@@ -8,6 +8,7 @@
 #include "render/gl/context.h"
 #include "tests/render/app/picture_difference.h"
 #include "tests/render/app/program_process.h"
+#include "tests/render/app/terrain_files.h"
 
 namespace render {
 namespace {
@@ -117,6 +118,39 @@ TEST_F(LayerCommand, AMeshStandsInItsPlace) {
     }
 }
 
+// A mesh stands for the ground of a line unless it is far above that.
+TEST_F(LayerCommand, LinesAndMeshesLieInTheirOrder) {
+    const std::string dem = OCTAGLOBE_SOURCE_DIR "/data/sangre_de_cristo.tif";
+    ASSERT_EQ(run(folder_.path(), {"tin", dem, "--max-deviation", "80", "-o", "t.glb"}).status, 0);
+    Terrain plateau{.width = 9, .height = 9, .x = -105.2, .y = 37.7, .step_x = 0.05, .step_y = -0.05};
+    plateau.height_m = [](int column, int) { return 9000 + column; };
+    plateau.write(folder_.path() / "plateau.vrt");
+    ASSERT_EQ(run(folder_.path(), {"tin", "plateau.vrt", "--max-deviation", "20", "-o", "high.glb"}).status, 0);
+    write("line.geojson", R"({"type":"LineString","coordinates":[[-105.3,37.5],[-104.7,37.5]]})");
+    const std::string view = "--at 37.5,-105 --range 60km --time 2026-06-21T18:00:00Z --layer ";
+    const std::string line = "line.geojson,color=#ff0000,width=8", also = " --layer ";
+    const auto red = [&](const std::string& layers) {
+        const auto [r, g, b] = pixel(picture(view + layers), 100, 100);
+        return r > g + 60 && r > b + 60;
+    };
+    EXPECT_TRUE(red("t.glb,color=#00ff00" + also + line));
+    EXPECT_FALSE(red(line + also + "t.glb,color=#00ff00"));
+    EXPECT_TRUE(red(line + also + "t.glb,color=#00ff00,opacity=0"));
+    EXPECT_FALSE(red("high.glb" + also + line));
+    EXPECT_TRUE(red("high.glb,opacity=0" + also + line));
+    // With many samples a pixel depths are resolved.
+    EXPECT_TRUE(red("t.glb,color=#00ff00" + also + line + " --samples 4"));
+}
+
+TEST_F(LayerCommand, CoastlinesLieOnAMeshThatIsBelowAllElse) {
+    ASSERT_EQ(run(folder_.path(), {"mesh", "--planet", "--level", "12", "-o", "earth.glb"}).status, 0);
+    write("line.geojson", R"({"type":"LineString","coordinates":[[-150,-60],[-149,-60]]})");
+    const std::string view = "--at 5,10 --range 9000km --layer ", coasts = " --show coastlines",
+                      above = "line.geojson --layer earth.glb";
+    EXPECT_GT(compare(picture(view + "earth.glb"), picture(view + "earth.glb" + coasts), 8).share(), 0.005);
+    EXPECT_EQ(compare(picture(view + above), picture(view + above + coasts), 8).share(), 0);
+}
+
 // Red in the north, blue in the south.
 TEST_F(LayerCommand, AMeshHasItsPictureOnIt) {
     planet::Image photo{64, 64, 3, {}};
@@ -146,6 +180,23 @@ TEST_F(LayerCommand, AMeshHasItsPictureOnIt) {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     const auto plain = pixel(planet::read_image(folder_ / "broken.png"), 100, 40);
     EXPECT_LT(std::abs(plain[0] - plain[2]), 30);
+}
+
+TEST_F(LayerCommand, AMeshHasTheColourOfItsMaterial) {
+    const std::string dem = OCTAGLOBE_SOURCE_DIR "/data/sangre_de_cristo.tif";
+    ASSERT_EQ(run(folder_.path(), {"tin", dem, "--max-deviation", "200", "-o", "t.glb"}).status, 0);
+    const std::string grey = content(folder_ / "t.glb"), factor = R"("baseColorFactor":[0.6,0.6,0.6,)";
+    const auto seen = [&](const std::string& other) {
+        std::string bytes = grey;
+        EXPECT_NE(bytes.find(factor), bytes.npos);
+        write("m.glb", bytes.replace(bytes.find(factor), factor.size(), other));
+        return pixel(picture("--at 37.5,-105 --range 60km --time 2026-06-21T18:00:00Z --layer m.glb"), 100, 100);
+    };
+    const auto clay = seen(factor), red = seen(R"("baseColorFactor":[0.9,0.1,0.1,)"),
+               white = seen(R"("baseColorFactor":[1.0,1.0,1.0,)");
+    EXPECT_GT(red[0], red[1] + 80);
+    EXPECT_EQ(white, clay);
+    EXPECT_LT(std::abs(clay[0] - clay[2]), 40);
 }
 
 TEST_F(LayerCommand, LabelsAreDrawn) {

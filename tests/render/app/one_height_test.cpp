@@ -61,7 +61,7 @@ std::vector<Heights> queried(const ScratchFolder& folder, const std::vector<plan
     std::ifstream in(folder / "heights.csv");
     std::string line;
     std::getline(in, line);
-    EXPECT_EQ(line, "latitude_deg,longitude_deg,height_m,ellipsoidal_height_m,height_bound_m");
+    EXPECT_EQ(line, "latitude_deg,longitude_deg,height_m,ellipsoidal_height_m,height_bound_m,source,blended_with");
     std::vector<Heights> heights;
     while (std::getline(in, line)) {
         std::istringstream fields(line);

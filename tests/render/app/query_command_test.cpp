@@ -73,7 +73,7 @@ TEST_F(Query, HeightsOfATable) {
     std::istringstream lines(content(*folder_ / "heights.csv"));
     std::string line;
     std::getline(lines, line);
-    EXPECT_EQ(line, "latitude_deg,longitude_deg,height_m,ellipsoidal_height_m,height_bound_m");
+    EXPECT_EQ(line, "latitude_deg,longitude_deg,height_m,ellipsoidal_height_m,height_bound_m,source,blended_with");
     std::getline(lines, line);
     EXPECT_TRUE(line.starts_with("49.840000000,10.200000000,")) << line;
     std::getline(lines, line);

@@ -414,6 +414,12 @@ TEST_F(ViewCommand, WithNeitherGlxNorEglItSaysSo) {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
 }
 
+/// For windows that open from now on. @param dots an inch, 96: as usual
+int set_density(int dots) {
+    return run_quietly({"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER",
+                        "Xft.dpi: " + std::to_string(dots)});
+}
+
 // Twice the density: the line of status is 64 pixels high and not 32.
 TEST_F(ViewCommand, PanelsFollowTheDensityOfTheDisplay) {
     if (!has_program("xprop")) GTEST_SKIP() << "xprop is not installed";
@@ -426,9 +432,57 @@ TEST_F(ViewCommand, PanelsFollowTheDensityOfTheDisplay) {
     };
     EXPECT_TRUE(darkened(24));
     EXPECT_FALSE(darkened(48));
-    ASSERT_EQ(
-        run_quietly({"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER", "Xft.dpi: 192"}), 0);
+    ASSERT_EQ(set_density(192), 0);
     EXPECT_TRUE(darkened(48));
+}
+
+// Lines and letters too, and the command line says by how much.
+TEST_F(ViewCommand, LinesAndLettersFollowTheDensityOfTheDisplay) {
+    if (!has_program("xprop")) GTEST_SKIP() << "xprop is not installed";
+    std::ofstream(folder_ / "line.geojson") << R"({"type":"LineString","coordinates":[[-40,0.3],[-20,0.3]]})";
+    const std::string view =
+        "--at 0.3,-30 --range 90km --show graticule --size 400x300 --bare --layer line.geojson,color=#ff0000,width=4";
+    const auto red_rows = [&](const std::string& more, const std::string& scale) {
+        const auto seen = report(view + more + " --screenshot window.png");
+        const std::string line = seen["view"];
+        EXPECT_EQ(value_of(line, "--scale"), scale);
+        std::vector<std::string> arguments = words(line + " -o picture.png");
+        arguments.erase(arguments.begin());
+        EXPECT_EQ(run(folder_.path(), arguments).status, 0) << line;
+        const planet::Image window = planet::read_image(folder_ / "window.png");
+        EXPECT_LE(compare(window, planet::read_image(folder_ / "picture.png"), 3).share(), 0.0005) << line;
+        int red = 0;
+        for (int y = 0; y < window.height; ++y) red += window.pixel(90, y)[0] > 200 && window.pixel(90, y)[1] < 60;
+        return red;
+    };
+    EXPECT_NEAR(red_rows("", ""), 4, 1);
+    ASSERT_EQ(set_density(144), 0);
+    EXPECT_NEAR(red_rows("", "1.5"), 6, 1);
+    EXPECT_NEAR(red_rows(" --scale 3", "3"), 12, 1);
+    EXPECT_NEAR(red_rows(" --scale 1", ""), 4, 1);
+}
+
+// In the middle of the window, above the line of status, where it stays for some seconds.
+TEST_F(ViewCommand, APictureThatCannotBeReadIsANotice) {
+    planet::write_image(folder_ / "photo.png", {8, 8, 3, std::vector<std::uint8_t>(8 * 8 * 3, 90)});
+    ASSERT_EQ(run(folder_.path(), {"tin", OCTAGLOBE_SOURCE_DIR "/data/sangre_de_cristo.tif", "--max-deviation", "500",
+                                   "--drape", "photo.png", "-o", "t.glb"})
+                  .status,
+              0);
+    std::string bytes = content(folder_ / "t.glb");
+    bytes.replace(bytes.rfind("\x89PNG"), 4, "none");
+    std::ofstream(folder_ / "t.glb", std::ios::binary) << bytes;
+    const std::string view = "view --at 10,10 --range 9000km --size 640x360 --layer t.glb --screenshot ";
+    const Outcome outcome = run(folder_.path(), words(view + "told.png"));
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err.rfind("octaglobe: warning: t.glb: is no picture", 0), 0u) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    ASSERT_EQ(run(folder_.path(), words(view + "silent.png --bare")).status, 0);
+    const planet::Image told = planet::read_image(folder_ / "told.png"),
+                        silent = planet::read_image(folder_ / "silent.png");
+    int different = 0;
+    for (int x = 220; x < 420; ++x) different += std::abs(told.pixel(x, 264)[2] - silent.pixel(x, 264)[2]) > 20;
+    EXPECT_GT(different, 100);
 }
 
 /// 6000 m above the geoid over Blanca Peak.
