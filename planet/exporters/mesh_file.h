@@ -96,7 +96,7 @@ SurfaceMesh read_mesh(const std::string& path, MeshFormat format, MeshReference*
                       MeshLooks* looks = nullptr);
 
 /// Whether a file that write_mesh() has written has just the triangles of a mesh, in their order, each corner to the bit.
-/// @param mesh as round_to_format() left it. Throws as read_mesh() does, but for an .stl.
+/// @param mesh as round_to_format() left it. A .glb or .ply that is damaged throws as read_mesh() does.
 bool file_holds(const std::string& path, MeshFormat format, const SurfaceMesh& mesh);
 
 }  // namespace planet

@@ -105,25 +105,12 @@ class CornerAttributes {
     std::vector<std::uint32_t> uv_of_, normal_of_;  ///< by vertex
 };
 
-/// Room for all: while an array grows it is there twice.
-void reserve(SurfaceMesh& mesh, std::string_view text) {
-    std::size_t vertices = 0, faces = 0;
-    while (!text.empty()) {
-        const std::string_view line = take_line(text);
-        vertices += line.starts_with("v ");
-        faces += line.starts_with("f ");
-    }
-    mesh.vertices.reserve(vertices);
-    mesh.triangles.reserve(faces);
-}
-
 }  // namespace
 
 ReadMesh read_obj(std::span<const std::uint8_t> file) {
     ReadMesh read;
     CornerAttributes attributes;
     std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
-    reserve(read.mesh, text);
     while (!text.empty()) {
         std::string_view line = take_line(text);
         const std::string_view key = take_word(line);

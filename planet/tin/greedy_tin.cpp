@@ -71,14 +71,14 @@ class GreedyInsertion {
         measure(all);
     }
 
-    // Triangles within the tolerance do not wait.
+    // Triangles within a bound do not wait.
     void measure(std::span<const Index> triangles) {
         measured_.resize(triangles.size());
         measure_->measure(mesh_, triangles, measured_);
         if (measure_->adds_up()) share_.resize(mesh_.triangle_slots(), 0);
         for (std::size_t i = 0; i < triangles.size(); ++i) {
             const Measured& m = measured_[i];
-            if (m.sample.x >= 0 && m.deviation > options_.tolerance)
+            if (m.sample.x >= 0 && m.deviation > options_.tolerance && m.priority > options_.least_priority)
                 priority_.set(triangles[i], {m.priority, m.sample});
             else
                 priority_.remove(triangles[i]);

@@ -29,6 +29,8 @@ struct GreedyOptions {
     /// Ends before there are more triangles, at least 2.
     std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
     TinMeasure* measure = nullptr;  ///< none: local
+    /// Triangles of no more than that are not refined, however far their samples: by the measure, >= 0.
+    double least_priority = 0;
     std::vector<std::size_t> stages = {};
     std::function<void(TinStage&&)> at_stage = {};
 };

@@ -41,5 +41,8 @@ enum class TinMetric {
 
 /// @param grid stays as long as the measure
 std::unique_ptr<TinMeasure> make_measure(TinMetric metric, const HeightGrid& grid);
+/// The same of a tile, whose border stays as it is: no sample on the grid's border is one to insert, and deviations are
+/// those of the others.
+std::unique_ptr<TinMeasure> make_inner_measure(TinMetric metric, const HeightGrid& grid);
 
 }  // namespace planet

@@ -8,6 +8,7 @@
 #include "planet/error.h"
 #include "planet/parallel.h"
 #include "planet/tin/border_line.h"
+#include "planet/tin/greedy_tin.h"
 #include "planet/tin/prune.h"
 #include "planet/tin/quick_insertion.h"
 #include "planet/tin/triangle_scan.h"
@@ -24,7 +25,7 @@ using Index = Delaunay::Index;
 constexpr int start_spacing = 64;
 
 // The vertices of a straight line of samples between two corners of a tile.
-std::vector<glm::ivec2> border_vertices(const HeightGrid& grid, glm::ivec2 from, glm::ivec2 to, double tolerance,
+std::vector<glm::ivec2> border_vertices(const HeightGrid& grid, glm::ivec2 from, glm::ivec2 to, const TinBound& bound,
                                         const std::vector<glm::ivec2>& needed) {
     const glm::ivec2 step = glm::sign(to - from);
     const int n = std::max(to.x - from.x, to.y - from.y) + 1;
@@ -38,7 +39,7 @@ std::vector<glm::ivec2> border_vertices(const HeightGrid& grid, glm::ivec2 from,
     for (const glm::ivec2 p : needed)
         if (glm::min(p, from) == from && glm::max(p, to) == to) keep.push_back(p.x - from.x + p.y - from.y);
     std::vector<glm::ivec2> vertices;
-    for (const int i : simplified_line(line, tolerance, keep)) vertices.push_back(from + i * step);
+    for (const int i : simplified_line(line, bound, keep)) vertices.push_back(from + i * step);
     return vertices;
 }
 
@@ -58,12 +59,16 @@ class TileWork {
         TinTile out;
         for (const glm::ivec2 p : void_border(heights_, {0, 0}, last())) mesh_.insert(p);
         if (!needs_.features.empty()) out.features = insert_features(mesh_, heights_, moved(needs_.features, -low_));
-        for (const glm::ivec2 p : tile_border(around_, low_, low_ + last(), options_.tolerance, needs_.border))
+        for (const glm::ivec2 p : tile_border(around_, low_, low_ + last(), options_.bound(), needs_.border))
             mesh_.insert(p - low_);
         const std::size_t required = mesh_.vertex_slots();
-        if (deserves_start_grid()) insert_start_grid();
-        const bool prunes = options_.quality != TinQuality::fast;
-        insert_to_tolerance(mesh_, heights_, {options_.tolerance, prunes ? 0.5f : 1.0f});
+        const bool prunes = options_.quality != TinQuality::fast && options_.least_priority == 0;
+        if (options_.metric == TinMetric::local) {
+            if (deserves_start_grid()) insert_start_grid();
+            insert_to_tolerance(mesh_, heights_, {options_.tolerance, prunes ? 0.5f : 1.0f});
+        } else {
+            insert_in_order();
+        }
         if (prunes) {
             const int passes = options_.quality == TinQuality::best ? 8 : 1;
             prune(mesh_, heights_, {options_.tolerance, passes, std::vector<std::uint8_t>(required, 1)});
@@ -75,6 +80,15 @@ class TileWork {
 
   private:
     glm::ivec2 last() const { return {heights_.width() - 1, heights_.height() - 1}; }
+
+    void insert_in_order() {
+        const std::unique_ptr<TinMeasure> measure = make_inner_measure(options_.metric, heights_);
+        GreedyOptions how;
+        how.tolerance = options_.tolerance;
+        how.measure = measure.get();
+        how.least_priority = options_.least_priority;
+        insert_greedily(mesh_, heights_, how);
+    }
 
     // Not where the terrain is so even that the grid would be most of the mesh: where most of its cells keep the
     // tolerance.
@@ -160,14 +174,14 @@ TinTile tin_tile(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, const 
     return TileWork(grid, low, high, options, needs).run(offset);
 }
 
-std::vector<glm::ivec2> tile_border(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, double tolerance,
+std::vector<glm::ivec2> tile_border(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, const TinBound& bound,
                                     const std::vector<glm::ivec2>& needed) {
     std::vector<glm::ivec2> vertices;
     for (const auto& [from, to] : {std::pair{low, glm::ivec2(high.x, low.y)},
                                    {{low.x, high.y}, high},
                                    {low, {low.x, high.y}},
                                    {{high.x, low.y}, high}})
-        std::ranges::move(border_vertices(grid, from, to, tolerance, needed), std::back_inserter(vertices));
+        std::ranges::move(border_vertices(grid, from, to, bound, needed), std::back_inserter(vertices));
     return vertices;
 }
 

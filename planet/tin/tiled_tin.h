@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "planet/tin/height_grid.h"
+#include "planet/tin/measure.h"
 #include "planet/tin/tin_features.h"
 #include "planet/tin/tin_mesh.h"
 
@@ -41,10 +42,24 @@ enum class TinQuality {
     best,      ///< pruning until nothing more can go
 };
 
+/// Up to where a TIN is refined: while a sample deviates by more than the tolerance, and, by a metric that adds up, while
+/// its triangle has more than the least priority. One such bound for all tiles makes of them what one greedy insertion that
+/// has come to it makes of the whole, but for borders. Without a least priority no sample deviates by more than the
+/// tolerance, by any metric.
+struct TinBound {
+    double tolerance = 0;  ///< metres, >= 0
+    TinMetric metric = TinMetric::local;
+    double least_priority = 0;  ///< m for regional, m^2 for rms; local has none
+};
+
 struct TiledTinOptions {
     double tolerance = 0;  ///< metres, >= 0
     TinQuality quality = TinQuality::standard;
     unsigned threads = 0;  ///< 0: one a processor. The same bits whatever the number.
+    TinMetric metric = TinMetric::local;
+    double least_priority = 0;  ///< see TinBound; above 0 nothing is pruned
+
+    TinBound bound() const { return {tolerance, metric, least_priority}; }
 };
 
 /// What a tile has to have besides what its heights call for.
@@ -79,9 +94,9 @@ TinTile tin_tile(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, const 
                  glm::ivec2 offset = {0, 0}, const TinTileNeeds& needs = {});
 
 /// The vertices on a tile's border, as its neighbours have them: side by side, corners in two of them.
-/// @param grid, low, high as for tin_tile() @param tolerance metres @param needed samples on the border that have to be
+/// @param grid, low, high as for tin_tile() @param needed samples on the border that have to be
 /// among them
-std::vector<glm::ivec2> tile_border(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, double tolerance,
+std::vector<glm::ivec2> tile_border(const HeightGrid& grid, glm::ivec2 low, glm::ivec2 high, const TinBound& bound,
                                     const std::vector<glm::ivec2>& needed = {});
 
 /// Samples a tile that keep its work in the processor's cache.

@@ -382,8 +382,9 @@ TEST(MeshFile, HoldsAMeshToTheBit) {
         EXPECT_FALSE(holds(moved));
         EXPECT_FALSE(holds(fewer));
         EXPECT_FALSE(holds(turned));
-        if (format != MeshFormat::stl) continue;
-        for (const std::string& damaged : {bytes.substr(0, bytes.size() - 1), bytes + "x", std::string()}) {
+        if (format != MeshFormat::stl && format != MeshFormat::obj) continue;
+        const std::string more = format == MeshFormat::obj ? "f 1 2 3\n" : "x";
+        for (const std::string& damaged : {bytes.substr(0, bytes.size() - 9), bytes + more, std::string()}) {
             write_bytes(path, damaged);
             EXPECT_FALSE(holds(mesh));
         }

@@ -86,7 +86,7 @@ TEST(TinBorderLine, KeepsTheTolerance) {
     const std::vector<float> line(grid.row(0), grid.row(0) + 500);
     std::size_t before = 501;
     for (const double tolerance : {0.0, 1.0, 10.0, 100.0, 1e6}) {
-        const std::vector<int> kept = simplified_line(line, tolerance);
+        const std::vector<int> kept = simplified_line(line, {tolerance});
         ASSERT_TRUE(std::is_sorted(kept.begin(), kept.end()));
         EXPECT_EQ(kept.front(), 0);
         EXPECT_EQ(kept.back(), 499);
@@ -103,9 +103,23 @@ TEST(TinBorderLine, KeepsTheTolerance) {
 }
 
 TEST(TinBorderLine, KeepsBothEndsOfAVoid) {
-    EXPECT_EQ(simplified_line({0, 0, 0, nan, nan, nan, nan, 0, 0, 0}, 1), (std::vector{0, 2, 3, 6, 7, 9}));
-    EXPECT_EQ(simplified_line({nan, nan, nan}, 1), (std::vector{0, 2}));
-    EXPECT_EQ(simplified_line({0, 0, 0, 0, 0}, 1, {3, 1}), (std::vector{0, 1, 3, 4}));
+    EXPECT_EQ(simplified_line({0, 0, 0, nan, nan, nan, nan, 0, 0, 0}, {1}), (std::vector{0, 2, 3, 6, 7, 9}));
+    EXPECT_EQ(simplified_line({nan, nan, nan}, {1}), (std::vector{0, 2}));
+    EXPECT_EQ(simplified_line({0, 0, 0, 0, 0}, {1}, {3, 1}), (std::vector{0, 1, 3, 4}));
+}
+
+// By a metric that adds up a stretch stays while half its length times what it adds up is no more than the least priority.
+TEST(TinBorderLine, MayBeKeptByWhatAddsUp) {
+    const std::vector<float> line{0, 0, 6, 0, 0, 0, 3, 0, 0};
+    const auto kept = [&](TinMetric metric, double least_priority) {
+        return simplified_line(line, {0, metric, least_priority});
+    };
+    EXPECT_EQ(kept(TinMetric::local, 1e9), kept(TinMetric::local, 0)) << "which has no least priority";
+    EXPECT_EQ(kept(TinMetric::regional, 4 * 9).size(), 2u);
+    EXPECT_EQ(kept(TinMetric::regional, 4 * 9 - 1)[1], 2);
+    EXPECT_EQ(kept(TinMetric::rms, 4 * 45).size(), 2u);
+    EXPECT_EQ(kept(TinMetric::rms, 4 * 45 - 1)[1], 2);
+    EXPECT_EQ(kept(TinMetric::rms, 0), kept(TinMetric::local, 0));
 }
 
 // ---- tiles ----
@@ -197,6 +211,35 @@ TEST(TinTiles, PruningTakesVerticesAndKeepsTheTolerance) {
                       best = tiled_tin(grid, {10, TinQuality::best}).triangles.size();
     EXPECT_LT(static_cast<double>(standard), 0.92 * static_cast<double>(fast));
     EXPECT_LT(best, standard);
+}
+
+// Refined up to one bound, by the samples within: what borders have follows from their samples alone.
+TEST(TinTiles, GoByMetricsThatAddUp) {
+    const HeightGrid grid = fractional_grid(97, 65);
+    for (const TinMetric metric : {TinMetric::regional, TinMetric::rms})
+        for (const double least_priority : {0.0, 3000.0, 1e9}) {
+            TiledTinOptions options{.tolerance = 12, .metric = metric, .least_priority = least_priority};
+            const TinMesh mesh = tiled_tin(grid, options, 32);
+            std::size_t border = 0;
+            EXPECT_TRUE(sound(mesh, &border));
+            EXPECT_EQ(doubled_area(mesh), 2 * 96 * 64) << "no gap between tiles";
+            const double deviation = brute_deviation(mesh, grid).max;
+            if (least_priority == 0) {
+                EXPECT_LE(deviation, 12 + 1e-9);
+            } else {
+                EXPECT_GT(deviation, 12);
+            }
+            if (least_priority == 1e9) {
+                EXPECT_EQ(mesh.triangles.size(), 2u * 6);
+            }
+            const TinTile tile = tin_tile(grid, {32, 0}, {64, 32}, options);
+            const auto expected = tile_border(grid, {32, 0}, {64, 32}, options.bound());
+            for (const auto& side : tile.border)
+                for (const std::uint32_t v : side)
+                    EXPECT_NE(std::ranges::find(expected, tile.mesh.vertices[v]), expected.end());
+            EXPECT_EQ(tile.border[0].size() + tile.border[1].size() + tile.border[2].size() + tile.border[3].size(),
+                      expected.size());
+        }
 }
 
 TEST(TinTiles, AFailureOfTheReaderOrTheSinkIsPassedOn) {

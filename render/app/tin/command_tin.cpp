@@ -145,9 +145,10 @@ void check_files(const TinCommand& o) {
 
 void check_tiles(const TinCommand& o) {
     require(o.output.has_value(), "--tile", "without a folder", "-o FOLDER");
-    require(o.measure.plain(), "--tile",
-            "goes with the local metric only: others put the samples of the whole raster in one order",
-            "--metric local --locate auto");
+    require(o.measure.metric != TinMetricName::gpu, "--tile", "goes not with gpu, which draws the raster as a whole",
+            "--metric local, regional or rms");
+    require(o.measure.goes_in_tiles(), "--tile",
+            "goes with no other way to locate: it needs an error grid of the whole raster", "--locate auto");
     require(!o.picture, "--tile", "goes with no picture of steps, which are of one mesh", "--picture without --tile");
 }
 

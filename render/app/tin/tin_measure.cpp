@@ -1,8 +1,16 @@
 #include "render/app/tin/tin_measure.h"
 
+#include <cassert>
+
 #include "render/app/tin/tin_gpu_measure.h"
 
 namespace render {
+
+planet::TinMetric TinMeasureChoice::in_tiles() const {
+    assert(goes_in_tiles());
+    if (metric == TinMetricName::regional) return planet::TinMetric::regional;
+    return metric == TinMetricName::rms ? planet::TinMetric::rms : planet::TinMetric::local;
+}
 
 std::unique_ptr<planet::TinMeasure> make_tin_measure(const TinMeasureChoice& choice, const planet::HeightGrid& grid) {
     switch (choice.metric) {

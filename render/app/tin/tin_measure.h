@@ -19,6 +19,10 @@ struct TinMeasureChoice {
 
     /// Whether it is the library's own local measure, which TINs made in tiles go by.
     bool plain() const { return metric == TinMetricName::local && locate == TinLocateName::automatic; }
+    /// Whether each tile can go by it for itself.
+    bool goes_in_tiles() const { return metric != TinMetricName::gpu && locate == TinLocateName::automatic; }
+    /// Of those that go in tiles.
+    planet::TinMetric in_tiles() const;
 };
 
 /// @param grid stays as long as the measure @return null for a plain choice

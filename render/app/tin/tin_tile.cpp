@@ -101,10 +101,12 @@ TileWindow TileMaker::read(std::size_t tile) const {
 }
 
 std::optional<MadeTile> TileMaker::make(const TileWindow& w, const planet::TinTileNeeds& needs,
-                                        double tolerance) const {
+                                        const TileAim& aim) const {
     planet::TiledTinOptions how;
-    how.tolerance = scale_ * std::max(0.5 * tolerance, tolerance - rounding_);  // what that leaves is mended
+    how.tolerance = scale_ * std::max(0.5 * aim.tolerance, aim.tolerance - rounding_);  // what that leaves is mended
     how.quality = command_.quality;
+    how.metric = command_.measure.in_tiles();
+    how.least_priority = aim.least_priority;
     std::optional<HeightGrid> over_plane;
     if (tangent_) over_plane.emplace(planet::heights_above_tangent_plane(w.window, tangent_->window(w.first), 1));
     const HeightGrid& grid = over_plane ? *over_plane : w.window;
@@ -116,7 +118,7 @@ std::optional<MadeTile> TileMaker::make(const TileWindow& w, const planet::TinTi
     if (tile.mesh.triangles.empty()) return std::nullopt;
 
     TinGoal goal;
-    goal.tolerance = tolerance;
+    if (aim.least_priority == 0) goal.tolerance = aim.tolerance;
     goal.format = command_.tile_format;
     goal.least_step = grid_step_;
     goal.threads = 1;
@@ -126,7 +128,7 @@ std::optional<MadeTile> TileMaker::make(const TileWindow& w, const planet::TinTi
     MadeTile made{as_written(std::move(tile.mesh), w.tile, frame_.window(w.low), goal), tile.features, {}};
 
     for (const glm::ivec2 p : made.tin.border_samples) made.needed.push_back(p + w.low);
-    std::vector<glm::ivec2> agreed = planet::tile_border(grid, low, high, how.tolerance, moved.border);
+    std::vector<glm::ivec2> agreed = planet::tile_border(grid, low, high, how.bound(), moved.border);
     std::ranges::sort(agreed, before);
     for (const glm::ivec2 p : made.tin.mesh.vertices)
         if (tiling_.tiles_at(p + w.low).size() > 1 && !std::ranges::binary_search(agreed, p + low, before))

@@ -31,6 +31,14 @@ struct MadeTile {
     std::vector<glm::ivec2> needed;
 };
 
+/// Up to where all tiles are refined.
+struct TileAim {
+    double tolerance = 0;  ///< m
+    /// See planet::TinBound. Above 0 there are no more triangles than a budget has, and samples may be farther than the
+    /// tolerance.
+    double least_priority = 0;
+};
+
 class TileMaker {
   public:
     /// Throws as TinSource and its frame() do, and planet::Error(bad_usage) for too many tiles.
@@ -45,9 +53,9 @@ class TileMaker {
     void survey(Progress& progress);
 
     TileWindow read(std::size_t tile) const;
-    /// Safe from several threads. @param needs in samples of the raster @param tolerance metres
+    /// Safe from several threads. @param needs in samples of the raster
     /// @return nothing where there is no triangle
-    std::optional<MadeTile> make(const TileWindow& w, const planet::TinTileNeeds& needs, double tolerance) const;
+    std::optional<MadeTile> make(const TileWindow& w, const planet::TinTileNeeds& needs, const TileAim& aim) const;
 
     /// Of a .glb; nothing for other formats and for solids.
     planet::MeshLooks looks(const WrittenTin& tin, const TileWindow& w) const;

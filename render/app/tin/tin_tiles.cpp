@@ -1,6 +1,6 @@
 // octaglobe tin --tile: a folder of meshes whose borders match bit for bit, of rasters of any size.
 //
-// What both tiles of a border must agree on follows from its samples and one tolerance: its vertices, and the grid on which
+// What both tiles of a border must agree on follows from its samples and one bound: its vertices, and the grid on which
 // a .glb rounds. Where a tile needs another vertex on its border, as a sample is too far in a frame that curves, or where
 // features cross, it becomes one of both tiles, which are made again.
 
@@ -74,10 +74,10 @@ class TinFolder {
             const auto step = report_.step("survey");
             maker_.survey(progress_);
         }
-        const double tolerance = command_.max_triangles ? tolerance_for_budget() : *command_.max_deviation;
+        const TileAim aim = command_.max_triangles ? aim_for_budget() : TileAim{*command_.max_deviation};
         {
             const auto step = report_.step("tiles");
-            make_all(tolerance, true);
+            make_all(aim, true);
         }
         check_budget();
         if (error_grid_) {
@@ -114,18 +114,15 @@ class TinFolder {
     // ---- the budget ----
 
     /// By making all tiles several times, unwritten.
-    double tolerance_for_budget() {
+    TileAim aim_for_budget() {
         const auto step = report_.step("search");
         const std::size_t budget = *command_.max_triangles;
-        const auto triangles = [&](double tolerance) {
-            make_all(tolerance, false);
+        const auto triangles = [&](double length) {
+            make_all(aim_of(length), false);
             return all_.triangles;
         };
-        double least = 0;
-        if (command_.max_deviation) {
-            least = *command_.max_deviation;
-            if (triangles(least) <= budget) return least;
-        }
+        const double least = command_.measure.plain() ? command_.max_deviation.value_or(0) : 0;
+        if (command_.max_deviation && triangles(least) <= budget) return aim_of(least);
         by_budget_ = true;
         constexpr double most = 1e7;
         const BudgetFit found = fit_to_budget(triangles, budget, least, most);
@@ -133,7 +130,14 @@ class TinFolder {
         if (found.triangles > budget)
             throw Error(Fault::bad_usage, "--max-triangles", std::to_string(budget) + " are fewer than the tiles need",
                         std::to_string(found.triangles) + " or more, or larger tiles");
-        return found.tolerance;
+        return aim_of(found.tolerance);
+    }
+    /// For the search, which looks for a length: a tolerance; or, as triangles fall alike with it on most terrain, the square
+    /// root of the distances in a triangle, the cube root of their squares.
+    TileAim aim_of(double length) const {
+        if (command_.measure.plain()) return {length};
+        const bool squares = command_.measure.in_tiles() == planet::TinMetric::rms;
+        return {command_.max_deviation.value_or(0), squares ? length * length * length : length * length};
     }
     void check_budget() const {
         if (by_budget_ && all_.triangles > *command_.max_triangles)
@@ -142,8 +146,8 @@ class TinFolder {
 
     // ---- tiles ----
 
-    /// The same figures whenever called with a tolerance.
-    void make_all(double tolerance, bool written) {
+    /// The same figures whenever called with an aim.
+    void make_all(const TileAim& aim, bool written) {
         Needs needs = needs_;
         std::vector<std::size_t> todo(tiling_.count());
         for (std::size_t i = 0; i < todo.size(); ++i) todo[i] = i;
@@ -155,7 +159,7 @@ class TinFolder {
             planet::parallel_for(todo.size(), 0, [&](std::size_t i) {
                 const auto own = needs.find(todo[i]);
                 const std::vector<glm::ivec2> found =
-                    make(todo[i], own == needs.end() ? planet::TinTileNeeds{} : own->second, tolerance, written);
+                    make(todo[i], own == needs.end() ? planet::TinTileNeeds{} : own->second, aim, written);
                 const std::lock_guard lock(mutex);
                 for (const glm::ivec2 p : found) needed.insert({p.y, p.x});
                 progress_.update(written ? "triangulating" : "trying", ++done / static_cast<double>(tiling_.count()));
@@ -173,17 +177,18 @@ class TinFolder {
     }
 
     /// @return samples on its border that it needs to share: if there are any, nothing is written
-    std::vector<glm::ivec2> make(std::size_t tile, const planet::TinTileNeeds& needs, double tolerance, bool written) {
+    std::vector<glm::ivec2> make(std::size_t tile, const planet::TinTileNeeds& needs, const TileAim& aim,
+                                 bool written) {
         const TileWindow w = maker_.read(tile);
         TileFigures& figures = figures_[tile] = {};
-        std::optional<MadeTile> made = maker_.make(w, needs, tolerance);
+        std::optional<MadeTile> made = maker_.make(w, needs, aim);
         if (!made) {
             if (written) figures.samples = samples_->count(tile, w, {});
             return {};
         }
         if (!made->needed.empty()) return std::move(made->needed);
         const WrittenTin& tin = made->tin;
-        if (!tin.kept && !by_budget_) refuse_bound(tolerance, tin.deviation_max, command_.tile_format);
+        if (!tin.kept && !by_budget_) refuse_bound(aim.tolerance, tin.deviation_max, command_.tile_format);
         figures.triangles = tin.mesh.triangles.size();
         figures.written_triangles = tin.surface.triangles.size();
         figures.vertices = tin.surface.vertices.size();

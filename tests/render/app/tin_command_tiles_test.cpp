@@ -246,6 +246,59 @@ TEST_F(TinTiles, ABudgetIsSharedOut) {
     EXPECT_GT(number(budget, "deviation_max_m"), 1);
 }
 
+/// Foothills of the Sangre de Cristo: 193 x 193 samples.
+Terrain real_terrain() {
+    Terrain terrain;
+    terrain.width = terrain.height = 193;
+    const auto dem =
+        std::make_shared<planet::Raster>(planet::read_raster(OCTAGLOBE_SOURCE_DIR "/data/sangre_de_cristo.tif"));
+    terrain.height_m = [dem](int x, int y) { return dem->at(1600 + x, 700 + y); };
+    return terrain;
+}
+
+// What a metric adds up is less with it than without, within the same budget; borders fit.
+TEST_F(TinTiles, ABudgetGoesWhereAMetricWantsIt) {
+    const Terrain terrain = real_terrain();
+    terrain.write(folder_ / "dem.vrt");
+    std::map<std::string, double> rms;
+    for (const std::string metric : {"local", "regional", "rms"}) {
+        std::filesystem::remove_all(folder_ / "out");
+        const Json report = tin("dem.vrt --max-triangles 2000 --tile 48 --format ply -o out --metric " + metric);
+        EXPECT_LE(report.at("triangles"), 2000);
+        EXPECT_GE(report.at("triangles"), 1900);
+        EXPECT_EQ(report.at("stopped_by"), "triangles");
+        const SurfaceMesh whole = put_together(read_tiles("out"));
+        const planet::SurfaceCheck check = planet::check(whole, planet::MeshFrame::source);
+        EXPECT_EQ(check.wrong_sides, 0u);
+        EXPECT_EQ(check.euler(), 1) << "a disc";
+        const SlowDeviation slow = slow_deviation_in_source(whole, terrain);
+        EXPECT_NEAR(slow.max, number(report, "deviation_max_m"), 1e-6);
+        EXPECT_NEAR(slow.rms, number(report, "deviation_rms_m"), 1e-6);
+        rms[metric] = slow.rms;
+    }
+    EXPECT_LT(rms["rms"], 0.9 * rms["local"]);
+    EXPECT_LT(rms["rms"], rms["regional"]);
+}
+
+// Without a budget the metric is but an order in which the tolerance is reached.
+TEST_F(TinTiles, KeepTheBoundByAnyMetric) {
+    Terrain terrain = wide_terrain();
+    terrain.height_m = [](int x, int y) { return x > 33 && x < 50 && y > 10 && y < 44 ? nan : hills(x, y); };
+    terrain.write(folder_ / "dem.vrt");
+    for (const std::string how : {"regional --format ply --frame source", "rms --format glb",
+                                  "rms --format stl --base 50", "rms --max-triangles 20000 --format glb --frame utm"}) {
+        std::filesystem::remove_all(folder_ / "out");
+        const Json report = tin("dem.vrt --max-deviation 15 --datum ellipsoid --tile 20 -o out --metric " + how);
+        EXPECT_LE(number(report, "deviation_max_m"), 15);
+        EXPECT_EQ(report.at("stopped_by"), "deviation");
+    }
+    std::filesystem::remove_all(folder_ / "out");
+    const Json budget = tin("dem.vrt --max-triangles 700 --max-deviation 1 --metric rms --tile 20 -o out");
+    EXPECT_EQ(budget.at("stopped_by"), "triangles");
+    EXPECT_GT(number(budget, "deviation_max_m"), 1);
+    EXPECT_LE(budget.at("triangles"), 700);
+}
+
 // Their floors are level with each other, and their walls the same.
 TEST_F(TinTiles, EachIsASolid) {
     Terrain terrain = wide_terrain();
