@@ -7,6 +7,8 @@
 namespace render {
 
 inline constexpr double label_size_px = 15;
+/// The radius of a point's mark in widths of a line.
+inline constexpr double point_radius_widths = 2.25;
 
 /// IEC 61966-2-1.
 inline glm::vec3 linear_from_srgb(const glm::vec3& c) {

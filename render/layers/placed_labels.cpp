@@ -12,7 +12,7 @@ namespace {
 using planet::wgs84;
 
 constexpr std::size_t most_labels = 400;
-constexpr double gap_px = 6, beside_mark_px = 9;
+constexpr double gap_px = 6, beside_mark_px = 4.5;
 constexpr glm::dvec2 above_right_px(6, -10);
 
 struct Box {
@@ -24,9 +24,10 @@ struct Box {
 };
 
 /// From a name's place to its text's left middle, pixels.
-glm::dvec2 offset(LayerName::Place place, double width, double size) {
+/// @param mark_px radius, at the usual size
+glm::dvec2 offset(LayerName::Place place, double width, double size, double mark_px) {
     const double scale = size / label_size_px;
-    if (place == LayerName::Place::beside_mark) return {beside_mark_px * scale, 0};
+    if (place == LayerName::Place::beside_mark) return {(mark_px + beside_mark_px) * scale, 0};
     if (place == LayerName::Place::above_right) return {above_right_px.x * scale, above_right_px.y * scale};
     return {-0.5 * width, 0};
 }
@@ -53,7 +54,8 @@ std::vector<PlacedLabel> place_labels(std::span<const Layer* const> layers, cons
     std::vector<Box> boxes;
     const double gap = gap_px * size / label_size_px;
     const planet::Culling culling = camera.culling({0, 0, camera.width, camera.height}, ground.culling.occluder_radius);
-    for (std::size_t i = layers.size(); i-- > 0;)
+    for (std::size_t i = layers.size(); i-- > 0;) {
+        const double mark_px = point_radius_widths * layers[i]->style.width;
         for (const LayerName& name : layers[i]->names) {
             if (labels.size() == most_labels) return labels;
             const glm::dvec3 foot = planet::ecef_from_normal(wgs84, name.normal);
@@ -62,7 +64,7 @@ std::vector<PlacedLabel> place_labels(std::span<const Layer* const> layers, cons
             const auto at = screen_from_ecef(camera, place);
             if (!at || at->x < 0 || at->y < 0 || at->x > camera.width || at->y > camera.height) continue;
             const double width = width_of(name.text);
-            const glm::dvec2 start = glm::dvec2(*at) + offset(name.at, width, size);
+            const glm::dvec2 start = glm::dvec2(*at) + offset(name.at, width, size, mark_px);
             const double left = std::round(start.x), middle = std::round(start.y);
             const Box box{left, middle - 0.5 * size, left + width, middle + 0.5 * size};
             // A line has other places for its name than one where it would be cut off.
@@ -72,6 +74,7 @@ std::vector<PlacedLabel> place_labels(std::span<const Layer* const> layers, cons
             boxes.push_back(box);
             labels.push_back({&name.text, {left, middle}, static_cast<float>(width)});
         }
+    }
     return labels;
 }
 

@@ -4,7 +4,7 @@ namespace render {
 
 namespace {
 
-constexpr double casing_px = 1.2, casing_opacity = 0.45, point_radius_widths = 2.25;
+constexpr double casing_px = 1.2, casing_opacity = 0.45;
 constexpr glm::vec3 casing_color(0.03f, 0.04f, 0.06f);
 constexpr int outside = 128;  // the stencil's middle: places may lie in fewer walls than the eye
 

@@ -297,6 +297,21 @@ TEST(Labels, GrowWithTheirGaps) {
     }
 }
 
+TEST(Labels, StandBesideTheirMarksHoweverLarge) {
+    const Camera camera = above(10, 20, 1e6);
+    const auto left = [&](double width) {
+        Layer layer;
+        layer.style.width = width;
+        layer.names.push_back({"x", normal(10, 20), LayerName::Place::beside_mark});
+        const Layer* const layers[] = {&layer};
+        const auto labels =
+            place_labels(layers, camera, level_ground(camera), label_size_px, [](const std::string&) { return 20.0; });
+        return static_cast<double>(labels.at(0).at.x) - 400;
+    };
+    EXPECT_NEAR(left(2), 9, 0.51);
+    EXPECT_NEAR(left(8) - left(2), 6 * point_radius_widths, 1);
+}
+
 TEST(Labels, CharactersOfAnyBytes) {
     EXPECT_EQ(characters_of("a\xc3\xa9\xe2\x82\xac\xf0\x9f\x97\xbb"), U"a\u00e9\u20ac\U0001F5FB");
     EXPECT_EQ(characters_of("\xff x\xe2\x82"), U"\ufffd x\ufffd");

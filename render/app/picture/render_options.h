@@ -91,8 +91,8 @@ struct RenderOptions {
 
     std::vector<LayerOptions> layers{};  ///< over the terrain, later on top
 
-    int part_side =
-        2048;  ///< pixels, 96 or more: larger pictures are drawn in parts. No option says another: for tests
+    /// Pixels, 96 or more: larger pictures are drawn in parts. No option says another: for tests.
+    int part_side = 2048;
     std::optional<PictureCrop> crop{};  ///< only these pixels of the picture, just as they are in the whole
     std::filesystem::path output = "globe.png";
 
