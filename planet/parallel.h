@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -38,6 +39,16 @@ void parallel_for(std::size_t count, unsigned threads, Work&& work) {
         run();
     }
     if (failure) std::rethrow_exception(failure);
+}
+
+/// The same. @param progress told from any thread which part of them is done, if there is one
+template <class Work>
+void parallel_for(std::size_t count, unsigned threads, const std::function<void(double)>& progress, Work&& work) {
+    std::atomic<std::size_t> done = 0;
+    parallel_for(count, threads, [&](std::size_t i) {
+        work(i);
+        if (progress) progress(static_cast<double>(++done) / static_cast<double>(count));
+    });
 }
 
 }  // namespace planet

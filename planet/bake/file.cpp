@@ -107,7 +107,10 @@ std::unique_ptr<BakeFile> BakeFile::resume(const std::filesystem::path& path, co
     resumed->metadata_ = read_metadata(resumed->file_);
     check_is_same(path, resumed->metadata_, metadata);
     if (resumed->metadata_.format_version != store_format_version)
-        differ(path, "in format version " + std::to_string(resumed->metadata_.format_version));
+        throw Error(Fault::bad_usage, path.string(),
+                    "the store there was begun in format version " + std::to_string(resumed->metadata_.format_version) +
+                        ", which only older programs write",
+                    "--replace to begin anew");
     if (!(resumed->metadata_.layers == metadata.layers)) differ(path, "its tiles begin at other levels");
     return resumed;
 }

@@ -203,8 +203,11 @@ void TileMaker::sample(Tile& tile, InnerTile* above) {
     normals_.resize(lattice_.size());
     for (std::size_t v = 0; v < normals_.size(); ++v) normals_[v] = lattice_.normal(v);
     tile.height.resize(normals_.size());
-    origins_.resize(normals_.size());
-    scene_.field.heights_with_origins(normals_, tile.height, origins_);
+    origins_.assign(normals_.size(), {});
+    if (scene_.scale.files > 0)
+        scene_.field.heights_with_origins(normals_, tile.height, origins_);
+    else
+        scene_.field.heights(normals_, tile.height);
     quantize(tile.height);
     if (above) {
         const auto& corner = tile_layout().corners[scene_.plan.layers().local_above(tile.root)];

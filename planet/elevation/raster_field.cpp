@@ -13,12 +13,6 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return 2 * std::asin(std::min(1.0, 0.5 * glm::distance(a, b)));
 }
 
-// As RasterSurface rounds.
-int nearest_sample(double at) {
-    const double below = std::floor(at);
-    return static_cast<int>(below) + (static_cast<float>(at - below) < 0.5f ? 0 : 1);
-}
-
 // Heights in metres as Raster::at has them.
 template <class Sample>
 void to_metres(const RasterHeader& raster, const Sample* samples, std::span<float> out) {
@@ -74,54 +68,59 @@ void RasterField::heights(std::span<const glm::dvec3> normals, std::span<float> 
 void RasterField::heights_with_origins(std::span<const glm::dvec3> normals, std::span<float> out,
                                        std::span<WeighedOrigin> origins) const {
     assert(out.size() == normals.size() && (origins.empty() || origins.size() == normals.size()));
+    std::fill(origins.begin(), origins.end(), WeighedOrigin{{1, 1}, 1});
+    std::vector<glm::ivec2> nearest(mosaic_ ? origins.size() : 0, glm::ivec2(-1));
     SampleCursor cursor(*samples_);
     glm::dvec2 at[256];
     for (std::size_t first = 0; first < normals.size(); first += std::size(at)) {
         const std::size_t n = std::min(std::size(at), normals.size() - first);
         map_.samples_from_normals(normals.subspan(first, n), {at, n});
         surface_.heights(cursor, {at, n}, out.subspan(first, n));
-        if (!origins.empty()) find_origins({at, n}, out.subspan(first, n), origins.subspan(first, n));
+        for (std::size_t i = 0; i < n && !nearest.empty(); ++i)
+            if (!std::isnan(out[first + i])) nearest[first + i] = nearest_sample(at[i]);
     }
+    if (!nearest.empty()) find_origins(nearest, origins);
 }
 
-void RasterField::find_origins(std::span<const glm::dvec2> samples, std::span<const float> heights,
-                               std::span<WeighedOrigin> origins) const {
-    std::fill(origins.begin(), origins.end(), WeighedOrigin{{1, 1}, 1});
-    if (!mosaic_) return;
-    const int columns = survey_.columns, rows = raster().height;
-    std::vector<glm::ivec2> nearest(samples.size());
-    glm::ivec2 least(columns, rows), most(-1);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (std::isnan(heights[i])) continue;
-        const glm::ivec2 at(nearest_sample(samples[i].x), nearest_sample(samples[i].y));
-        // Around the planet, or half a sample beyond the outer ones.
-        const int column =
-            surface_.columns_around() > 0 ? (at.x + columns) % columns : std::clamp(at.x, 0, columns - 1);
-        nearest[i] = {column, std::clamp(at.y, 0, rows - 1)};
-        least = glm::min(least, nearest[i]);
-        most = glm::max(most, nearest[i]);
+// Of a place with an answer. As RasterSurface rounds.
+glm::ivec2 RasterField::nearest_sample(glm::dvec2 at) const {
+    const glm::ivec2 below(glm::floor(at)), end(survey_.columns, raster().height);
+    const glm::vec2 beyond(at - glm::dvec2(below));
+    glm::ivec2 nearest = below + glm::ivec2(beyond.x < 0.5f ? 0 : 1, beyond.y < 0.5f ? 0 : 1);
+    if (surface_.columns_around() > 0) nearest.x = (nearest.x + end.x) % end.x;
+    return glm::clamp(nearest, glm::ivec2(0), end - 1);  // up to half a sample beyond the outer ones
+}
+
+// Places that are near each other, which nearly all are, look at the files together.
+void RasterField::find_origins(std::span<const glm::ivec2> nearest, std::span<WeighedOrigin> origins) const {
+    glm::ivec2 least(survey_.columns, raster().height), most(-1);
+    for (const glm::ivec2& at : nearest) {
+        if (at.x < 0) continue;
+        least = glm::min(least, at);
+        most = glm::max(most, at);
     }
     if (most.x < 0) return;
-    // Of places that are near each other, which nearly all are, at once.
     constexpr int most_across = 128;
     const glm::ivec2 size = most - least + 1;
-    const bool near = size.x <= most_across && size.y <= most_across;
-    SampleWindow window{least.x, least.y, near ? size.x : 1, near ? size.y : 1};
+    const bool together = size.x <= most_across && size.y <= most_across;
+    SampleWindow window{least.x, least.y, size.x, size.y};
+    const std::optional<std::uint32_t> only = mosaic_->only_part(window);
+    if (!together) window.columns = window.rows = 1;
     std::vector<std::uint32_t> parts(window.count());
-    if (near) mosaic_->find_parts(window, parts);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (std::isnan(heights[i])) continue;
-        std::size_t k = 0;
-        if (near) {
-            k = static_cast<std::size_t>(nearest[i].y - least.y) * static_cast<std::size_t>(size.x) +
-                static_cast<std::size_t>(nearest[i].x - least.x);
-        } else {
+    if (together && !only) mosaic_->find_parts(window, parts);
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+        if (nearest[i].x < 0) continue;
+        std::uint32_t part = only.value_or(0);
+        if (!only && together) {
+            const glm::ivec2 at = nearest[i] - least;
+            part = parts[static_cast<std::size_t>(at.y * size.x + at.x)];
+        } else if (!only) {
             window.column = nearest[i].x;
             window.row = nearest[i].y;
             mosaic_->find_parts(window, parts);
+            part = parts[0];
         }
-        const std::uint32_t file = 1 + parts[k];
-        origins[i].origin = {file, file};
+        origins[i].origin = {1 + part, 1 + part};
     }
 }
 

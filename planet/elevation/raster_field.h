@@ -42,8 +42,8 @@ class RasterField : public ElevationField {
     std::size_t border_size() const override { return 2 * survey_.border_sides; }
 
   private:
-    void find_origins(std::span<const glm::dvec2> samples, std::span<const float> heights,
-                      std::span<WeighedOrigin> origins) const;
+    glm::ivec2 nearest_sample(glm::dvec2 sample) const;
+    void find_origins(std::span<const glm::ivec2> nearest, std::span<WeighedOrigin> origins) const;
     double spacing_at(glm::dvec2 sample) const;
     RasterBlocks::Block make_block(int column, int row) const;
     void heights_of_row(SampleCursor& cursor, int column, int row, std::span<float> out) const;

@@ -212,6 +212,11 @@ bool RasterMosaic::read_samples(const SampleWindow& window, std::span<Sample> ou
     return true;
 }
 
+std::optional<std::uint32_t> RasterMosaic::only_part(const SampleWindow& window) const {
+    const std::vector<std::uint32_t> parts = parts_in(window);
+    return parts.size() == 1 ? std::optional(parts[0]) : std::nullopt;
+}
+
 void RasterMosaic::find_parts(const SampleWindow& window, std::span<std::uint32_t> out) const {
     assert(out.size() == window.count());
     const std::vector<std::uint32_t> parts = parts_in(window);

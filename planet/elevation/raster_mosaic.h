@@ -55,6 +55,8 @@ class RasterMosaic {
     /// Samples as Raster has them. False if a value does not fit.
     bool read(const SampleWindow& window, std::span<std::int16_t> out) const;
     void read(const SampleWindow& window, std::span<float> out) const;
+    /// The part that all samples of a window are of, but for void ones, if no other one meets it.
+    std::optional<std::uint32_t> only_part(const SampleWindow& window) const;
     /// Which part each sample of a window is of; nothing is meant by what a void sample gets. Reads only those parts that
     /// lie over others there.
     void find_parts(const SampleWindow& window, std::span<std::uint32_t> out) const;

@@ -117,6 +117,13 @@ class WeightlessRemoval {
     PatchTriangulation needed_;
 };
 
+void tell(const DecimationOptions& options, const DecimationReport& report) {
+    constexpr std::size_t removals_between = 1 << 14;
+    if (!options.progress || report.removals % removals_between != 0) return;
+    const double all = static_cast<double>(report.triangles_before) - static_cast<double>(options.max_triangles);
+    options.progress(static_cast<double>(report.triangles_before - report.triangles) / std::max(all, 1.0));
+}
+
 // ---- max: one vertex after the other, for none depends on one that is as cheap ----
 
 void decimate_by_largest(PatchTriangulation& mesh, const TriangleCount& count, const DenseQuadtree<float>& cost,
@@ -137,6 +144,7 @@ void decimate_by_largest(PatchTriangulation& mesh, const TriangleCount& count, c
         assert(merged);
         ++report.removals;
         report.highest_cost = static_cast<double>(next.cost);
+        tell(options, report);
     }
 }
 
@@ -184,7 +192,10 @@ class RmsDecimation {
         }
         fill_queue();
         while (report.triangles > options.max_triangles)
-            if (!remove_cheapest(options.max_cost, report)) break;
+            if (remove_cheapest(options.max_cost, report))
+                tell(options, report);
+            else
+                break;
         report.costed_domains = costed_;
         report.rms_m = std::sqrt(std::max(0.0, squared_) / static_cast<double>(raster_.valid_samples()));
     }

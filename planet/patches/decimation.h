@@ -19,6 +19,7 @@
 // part of their domain: those are costed at once, from the domain's border upwards as long as costs fall. (A cost that fell
 // above one that did not is noticed late: then the order is not strictly cheapest first, though every cost paid is true.)
 
+#include <functional>
 #include <limits>
 #include <span>
 
@@ -37,6 +38,8 @@ struct DecimationOptions {
     double max_cost = std::numeric_limits<double>::infinity();
     /// Vertices that stay, with all that they depend on. Samples that are no vertices of the given mesh are ignored.
     std::span<const glm::ivec2> keep = {};
+    /// Told now and then which part of the triangles to be removed are, 0..1.
+    std::function<void(double)> progress = {};
 };
 
 struct DecimationReport {

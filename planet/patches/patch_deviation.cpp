@@ -375,7 +375,8 @@ VoidState mark_mixed(const PatchRaster& raster, CellCode cell, int level, const 
 
 }  // namespace
 
-DenseQuadtree<float> patch_deviations(const PatchRaster& raster, unsigned threads) {
+DenseQuadtree<float> patch_deviations(const PatchRaster& raster, unsigned threads,
+                                      const std::function<void(double)>& progress) {
     const PatchLattice& lattice = raster.lattice();
     const PatchGrid& grid = raster.grid();
     const int levels = lattice.bisection_levels();
@@ -392,7 +393,7 @@ DenseQuadtree<float> patch_deviations(const PatchRaster& raster, unsigned thread
     const std::size_t lane_cells = static_cast<std::size_t>(grid.root_count()) << (levels - depth);
     constexpr std::size_t groups_a_piece = 16;
     const std::size_t groups = (lane_cells + width - 1) / width;
-    parallel_for((groups + groups_a_piece - 1) / groups_a_piece, threads, [&](std::size_t piece) {
+    parallel_for((groups + groups_a_piece - 1) / groups_a_piece, threads, progress, [&](std::size_t piece) {
         const auto cells = std::make_unique<LaneCells>(raster, depth, planes, out);
         for (std::size_t g = piece * groups_a_piece; g < std::min((piece + 1) * groups_a_piece, groups); ++g)
             cells->measure(g * width, lane_cells);

@@ -14,6 +14,7 @@
 // Heights of whole metres make everything here dyadic, and the deviations exact; else they are rounded up to float after
 // sums in double.
 
+#include <functional>
 #include <limits>
 
 #include "planet/patches/patch_raster.h"
@@ -26,7 +27,8 @@ inline constexpr float mixed_with_void = std::numeric_limits<float>::infinity();
 
 /// By cell of bisection levels 0 .. lattice.bisection_levels() - 1 (unit cells have none). Cells of padding only, and
 /// wholly void ones, have 0. Padding counts only by being void or not. The same bits whatever the threads.
-/// @param threads 0: one a processor
-DenseQuadtree<float> patch_deviations(const PatchRaster& raster, unsigned threads = 0);
+/// @param threads 0: one a processor @param progress told 0..1, from any thread
+DenseQuadtree<float> patch_deviations(const PatchRaster& raster, unsigned threads = 0,
+                                      const std::function<void(double)>& progress = {});
 
 }  // namespace planet

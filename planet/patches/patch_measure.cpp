@@ -182,10 +182,11 @@ struct LatticePlane {
 
 }  // namespace
 
-PlacedSamples place_samples(const PatchRaster& raster, const RasterFrame& frame) {
+PlacedSamples place_samples(const PatchRaster& raster, const RasterFrame& frame,
+                            const std::function<void(double)>& progress) {
     const auto w = static_cast<std::size_t>(raster.width()), h = static_cast<std::size_t>(raster.height());
     PlacedSamples samples{std::vector<glm::dvec3>(w * h), std::vector<glm::vec3>(w * h)};
-    parallel_for(h, 0, [&](std::size_t y) {
+    parallel_for(h, 0, progress, [&](std::size_t y) {
         std::vector<glm::dvec2> at(w);
         std::vector<double> heights(w);
         for (std::size_t x = 0; x < w; ++x) {
@@ -263,7 +264,8 @@ Sum measure_piece(Way& way, std::size_t begin, std::size_t end, const PatchMesh&
 }  // namespace
 
 AchievedDeviation measure(const PatchMesh& mesh, std::span<const glm::dvec3> written, const PatchRaster& raster,
-                          const RasterFrame& frame, const PlacedSamples* samples) {
+                          const RasterFrame& frame, const PlacedSamples* samples,
+                          const std::function<void(double)>& progress) {
     constexpr std::size_t piece = 4096;
     const std::size_t triangles = mesh.triangles.size(), pieces = (triangles + piece - 1) / piece;
     AchievedDeviation out;
@@ -275,9 +277,9 @@ AchievedDeviation measure(const PatchMesh& mesh, std::span<const glm::dvec3> wri
     };
     if (raster.has_void()) {
         MarkedRaster way(raster);
-        for (std::size_t k = 0; k < pieces; ++k) work(way, k);
+        parallel_for(pieces, 1, progress, [&](std::size_t k) { work(way, k); });
     } else {
-        parallel_for(pieces, 0, [&](std::size_t k) {
+        parallel_for(pieces, 0, progress, [&](std::size_t k) {
             const WholeRaster way(raster);
             work(way, k);
         });

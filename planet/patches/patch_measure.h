@@ -1,6 +1,7 @@
 #pragma once
 // What a written mesh of a raster has achieved: its deviation at every sample.
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -22,7 +23,9 @@ struct PlacedSamples {
     std::vector<glm::dvec3> position;
     std::vector<glm::vec3> up;
 };
-PlacedSamples place_samples(const PatchRaster& raster, const RasterFrame& frame);
+/// @param progress told 0..1, from any thread
+PlacedSamples place_samples(const PatchRaster& raster, const RasterFrame& frame,
+                            const std::function<void(double)>& progress = {});
 
 /// Places the vertices of a mesh.
 std::vector<glm::dvec3> place_vertices(const PatchMesh& mesh, const RasterFrame& frame);
@@ -31,7 +34,9 @@ std::vector<glm::dvec3> place_vertices(const PatchMesh& mesh, const RasterFrame&
 /// vertices were written; from the nearest corner of a triangle that is no such plane, upright or without area. Each sample counts once for the rms: in the triangle a little to its right and above, or where
 /// there may be none, in the first that holds it. The same bits whatever the threads.
 /// @param written by vertex, in the frame, rounded as its format rounds @param samples of a frame that is not affine
+/// @param progress told 0..1, from any thread
 AchievedDeviation measure(const PatchMesh& mesh, std::span<const glm::dvec3> written, const PatchRaster& raster,
-                          const RasterFrame& frame, const PlacedSamples* samples);
+                          const RasterFrame& frame, const PlacedSamples* samples,
+                          const std::function<void(double)>& progress = {});
 
 }  // namespace planet

@@ -344,6 +344,26 @@ TEST(Decimation, EndsAtOnceWhereThereIsNothingToDo) {
     EXPECT_THROW(decimate(mesh, raster, deviation, {.max_cost = std::nan("")}), Error);
 }
 
+TEST(Decimation, TellsHowFarItIs) {
+    const PatchRaster raster(rough(257, 257, 9), 1 << 20);
+    std::vector<double> deviations_told, told;
+    const DenseQuadtree<float> deviation =
+        patch_deviations(raster, 1, [&](double part) { deviations_told.push_back(part); });
+    ASSERT_FALSE(deviations_told.empty());
+    EXPECT_TRUE(std::ranges::is_sorted(deviations_told));
+    EXPECT_EQ(deviations_told.back(), 1);
+    for (const DecimationPriority priority : {DecimationPriority::max, DecimationPriority::rms}) {
+        told.clear();
+        PatchTriangulation mesh = full(raster);
+        decimate(mesh, raster, deviation,
+                 {.priority = priority, .max_triangles = 100, .progress = [&](double part) { told.push_back(part); }});
+        EXPECT_GE(told.size(), 2u);
+        EXPECT_TRUE(std::ranges::is_sorted(told));
+        EXPECT_GT(told.front(), 0.2);
+        EXPECT_LE(told.back(), 1);
+    }
+}
+
 TEST(Decimation, AFlatRasterCostsNothing) {
     Raster flat = rough(40, 70, 1);
     for (float& h : std::get<std::vector<float>>(flat.samples)) h = 1234.5f;

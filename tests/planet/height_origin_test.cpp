@@ -296,6 +296,32 @@ TEST(MosaicOrigins, AreNamedInBlendsToo) {
     EXPECT_EQ(origin_at(*field, 49.7, 21.10).origin, (HeightOrigin{3, 1}));
 }
 
+// Two files that meet at the antimeridian, on a grid that goes around: columns wrap.
+TEST(MosaicOrigins, GoAroundThePlanet) {
+    const testing::TemporaryFolder folder;
+    for (const double west : {-180.0, 150.0})
+        testing::write_raster<std::int16_t>(folder / (west < 0 ? "a.vrt" : "b.vrt"),
+                                            {30, 60, "EPSG:4326", {west, 1, 0, 30, 0, -1}, ""},
+                                            [&](int, int) { return static_cast<std::int16_t>(west); });
+    const SourceSpec source{folder / "*.vrt"};
+    const auto field = open_elevation_sources({&source, 1}, {});
+    ASSERT_EQ(source_files(field->sources()).size(), 2u);
+    EXPECT_EQ(origin_at(*field, 10, 179.9).origin, only(2));
+    EXPECT_EQ(origin_at(*field, 10, -179.9).origin, only(1));
+    EXPECT_EQ(origin_at(*field, 10, -150.6).origin, only(1));
+    EXPECT_EQ(origin_at(*field, 10, 150.2).origin, only(2));
+    EXPECT_EQ(origin_at(*field, 10, 180).origin.blended(), false);
+    EXPECT_NE(origin_at(*field, 10, 180).origin, only(0));
+    EXPECT_EQ(origin_at(*field, 10, 20).origin, only(0));
+    // Both in one batch, which is wider than a window.
+    const glm::dvec3 normals[2] = {at_degrees(0, 179.9), at_degrees(0, -179.9)};
+    float h[2];
+    WeighedOrigin origins[2];
+    field->heights_with_origins(normals, h, origins);
+    EXPECT_EQ(origins[0].origin, only(2));
+    EXPECT_EQ(origins[1].origin, only(1));
+}
+
 TEST(MosaicOrigins, NamesSayTheFolderWhereFilesHaveSeveral) {
     const Tiles tiles;
     std::filesystem::create_directory(tiles.folder / "more");

@@ -13,6 +13,7 @@
 #include "render/app/mesh/mesh_output.h"
 #include "render/app/mesh/raster_frames.h"
 #include "render/app/normals.h"
+#include "render/app/progress.h"
 
 namespace render {
 namespace {
@@ -43,10 +44,10 @@ class RasterMesher {
     void run() {
         if (!options_.keep.empty()) read_features();
         if (!frame_.affine()) {
-            const auto step = report_.step("place");
+            const auto step = begin("place", "placing");
             check_reach(frame_, *raster_);
             at_poles_ = samples_at_poles(*raster_);
-            samples_ = planet::place_samples(patches_, frame_);
+            samples_ = planet::place_samples(patches_, frame_, telling("placing"));
         }
         if (options_.level)
             make_level();
@@ -56,8 +57,17 @@ class RasterMesher {
     }
 
   private:
+    /// Times a step of the report, and tells of it on a terminal.
+    Report::Step begin(const char* step, const char* shown) {
+        progress_.update(shown, std::nan(""));
+        return report_.step(step);
+    }
+    std::function<void(double)> telling(const char* shown) {
+        return [this, shown](double part) { progress_.update(shown, part); };
+    }
+
     std::shared_ptr<const planet::Raster> read() {
-        const auto step = report_.step("read");
+        const auto step = begin("read", "reading");
         planet::RasterOptions how;
         how.plain = true;
         how.max_samples = most_samples;
@@ -67,7 +77,7 @@ class RasterMesher {
     planet::VerticalDatum datum() const { return options_.datum.value_or(planet::VerticalDatum::egm96); }
 
     void read_features() {
-        const auto step = report_.step("keep");
+        const auto step = begin("keep", "reading features");
         const KeptSamples found = samples_on(planet::read_features(options_.keep, *raster_), *raster_, patches_);
         if (found.samples.empty())
             throw Error(Fault::bad_data, options_.keep, "has nothing on the raster",
@@ -91,7 +101,7 @@ class RasterMesher {
             throw Error(Fault::bad_usage, "--level", std::to_string(*options_.level) + " is finer than the raster",
                         "0 to " + std::to_string(mesh.levels()));
         {
-            const auto step = report_.step("refine");
+            const auto step = begin("refine", "refining");
             planet::refine_to_level(mesh, *options_.level);
         }
         extract_and_measure(mesh);
@@ -104,7 +114,7 @@ class RasterMesher {
         const planet::DenseQuadtree<float> deviation = flat_deviations();
         planet::PatchTriangulation mesh = coarsest();
         {
-            const auto step = report_.step("refine");
+            const auto step = begin("refine", "refining");
             const double tolerance = std::max(0.0, *options_.max_deviation - patches_.sample_rounding());
             planet::refine_to_tolerance(mesh, deviation, tolerance);
         }
@@ -133,7 +143,7 @@ class RasterMesher {
         const planet::DenseQuadtree<float> deviation = curved ? curved_deviations() : flat_deviations();
         planet::PatchTriangulation mesh = coarsest();
         {
-            const auto step = report_.step("refine");
+            const auto step = begin("refine", "refining");
             const bool enough = options_.priority == MeshPriority::least
                                     ? planet::refine_to_budget(mesh, patches_, deviation, *options_.max_triangles)
                                     : decimate(mesh, deviation);
@@ -143,30 +153,33 @@ class RasterMesher {
     }
 
     /// From all samples down to the budget. @return false, and nothing changes, if what must stay takes more
-    bool decimate(planet::PatchTriangulation& mesh, const planet::DenseQuadtree<float>& deviation) const {
+    bool decimate(planet::PatchTriangulation& mesh, const planet::DenseQuadtree<float>& deviation) {
         std::vector<glm::ivec2> keep = kept_;
         keep.insert(keep.end(), at_poles_.begin(), at_poles_.end());
         planet::PatchTriangulation full = planet::coarsest(patches_);
         planet::refine_to_level(full, full.levels());
         const auto priority =
             options_.priority == MeshPriority::max ? planet::DecimationPriority::max : planet::DecimationPriority::rms;
-        const auto done = planet::decimate(
-            full, patches_, deviation, {.priority = priority, .max_triangles = *options_.max_triangles, .keep = keep});
+        const auto done = planet::decimate(full, patches_, deviation,
+                                           {.priority = priority,
+                                            .max_triangles = *options_.max_triangles,
+                                            .keep = keep,
+                                            .progress = telling("refining")});
         if (done.triangles > *options_.max_triangles) return false;
         mesh = std::move(full);
         return true;
     }
 
-    planet::DenseQuadtree<float> flat_deviations() const {
-        const auto step = report_.step("deviations");
-        return planet::patch_deviations(patches_);
+    planet::DenseQuadtree<float> flat_deviations() {
+        const auto step = begin("deviations", "deviations");
+        return planet::patch_deviations(patches_, 0, telling("deviations"));
     }
 
     /// With the planet's curvature: of heights over the plane that touches it at the raster's middle. They stand for the
     /// deviations along each sample's vertical, and are the nearer to them the smaller the raster; what is written is
     /// measured as it is.
-    planet::DenseQuadtree<float> curved_deviations() const {
-        const auto step = report_.step("deviations");
+    planet::DenseQuadtree<float> curved_deviations() {
+        const auto step = begin("deviations", "deviations");
         const glm::dvec2 middle(0.5 * (raster_->width - 1), 0.5 * (raster_->height - 1));
         const double ground = 0;
         glm::dvec3 base;
@@ -179,7 +192,7 @@ class RasterMesher {
         for (std::size_t i = 0; i < heights.size(); ++i)
             heights[i] = static_cast<float>(glm::dot(samples_.position[i] - base, glm::dvec3(up)));
         over_plane.samples = std::move(heights);
-        return planet::patch_deviations(planet::PatchRaster(over_plane, most_samples));
+        return planet::patch_deviations(planet::PatchRaster(over_plane, most_samples), 0, telling("deviations"));
     }
 
     [[noreturn]] void refuse_budget(const planet::PatchTriangulation& coarsest) const {
@@ -193,7 +206,7 @@ class RasterMesher {
 
     void extract_and_measure(const planet::PatchTriangulation& mesh) {
         {
-            const auto step = report_.step("extract");
+            const auto step = begin("extract", "extracting");
             mesh_ = planet::extract(mesh, patches_);
             surface_.vertices = planet::place_vertices(mesh_, frame_);
             surface_.triangles = mesh_.triangles;
@@ -205,8 +218,9 @@ class RasterMesher {
             if (std::ranges::any_of(surface_.vertices, is_nowhere)) refuse_reach(raster_->name);
             rounding_ = planet::round_to_format(surface_, frame_.reference(), output_.format());
         }
-        const auto step = report_.step("measure");
-        achieved_ = planet::measure(mesh_, surface_.vertices, patches_, frame_, frame_.affine() ? nullptr : &samples_);
+        const auto step = begin("measure", "measuring");
+        achieved_ = planet::measure(mesh_, surface_.vertices, patches_, frame_, frame_.affine() ? nullptr : &samples_,
+                                    telling("measuring"));
     }
 
     void finish() {
@@ -216,10 +230,12 @@ class RasterMesher {
             surface_.level.push_back(
                 static_cast<std::uint8_t>(planet::bisection_level_of(cell, patches_.grid().root_bits())));
         if (frame_.mirrored()) turn_over();
+        progress_.update("writing", std::nan(""));
         output_.write(surface_, frame_.reference(), rounding_, report_, looks());
         fill_report();
         draw();
         output_.commit();
+        progress_.clear();
         std::cout << grouped(surface_.triangles.size()) << " triangles, " << grouped(surface_.vertices.size())
                   << " vertices; deviation at most " << four_digits(achieved_.max + patches_.sample_rounding())
                   << " m, rms " << four_digits(achieved_.rms) << " m over " << grouped(achieved_.samples)
@@ -264,6 +280,7 @@ class RasterMesher {
 
     void draw() {
         if (!options_.picture) return;
+        progress_.update("drawing", std::nan(""));
         const planet::RasterFrame plan = frame_of_raster(raster_, planet::MeshFrame::source, datum());
         const std::vector<glm::dvec3> places = planet::place_vertices(mesh_, plan);
         output_.draw({.vertices = places,
@@ -276,6 +293,7 @@ class RasterMesher {
 
     const MeshOptions& options_;
     Report& report_;
+    Progress progress_;
     MeshOutput output_;
     std::shared_ptr<const planet::Raster> raster_;
     planet::PatchRaster patches_;
