@@ -90,8 +90,10 @@ class TinMaker {
         planet::TinOptions how;
         const double bound = command_.max_deviation.value_or(0);
         how.tolerance = std::max(0.5 * bound, bound - rounding());  // what that leaves is mended
-        if (!frame_.affine() && !curves(frame_)) how.tolerance *= 1 - curve_spare;
-        if (!curves(frame_)) return make(how, *heights_);
+        if (!curves(frame_)) {
+            if (!frame_.affine()) how.tolerance *= 1 - curve_spare;
+            return make(how, *heights_);
+        }
         const planet::RasterFrame tangent = source_.tangent_frame();
         how.tolerance *= command_.exaggeration * share_above_plane(tangent, {heights_->width(), heights_->height()});
         const auto over_plane = [&](glm::ivec2 low, glm::ivec2 high) {
